@@ -1,5 +1,6 @@
 #include "ar/capture/picture_source.h"
 #include "gi/core/error.h"
+#include "gi/core/file.h"
 #include "gi/core/text.h"
 
 #include <algorithm>
@@ -12,12 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-std::string lower(std::string s)
-{
-    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return s;
-}
 
 /// A name with one %d in it.
 struct Pattern {
@@ -208,7 +203,7 @@ std::vector<fs::path> picture_files(fs::path const& folder)
     static std::set<std::string> const kPictures{".png",  ".jpg", ".jpeg", ".bmp",  ".tif",
                                                  ".tiff", ".ppm", ".pgm",  ".webp", ".exr"};
     std::vector<fs::path> files = files_in(folder);
-    std::erase_if(files, [](fs::path const& f) { return !kPictures.contains(lower(f.extension().string())); });
+    std::erase_if(files, [](fs::path const& f) { return !kPictures.contains(gi::lower_extension(f)); });
     std::sort(files.begin(), files.end(), [](fs::path const& a, fs::path const& b) {
         return is_before_naturally(a.filename().string(), b.filename().string());
     });

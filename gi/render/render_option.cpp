@@ -44,8 +44,7 @@ RenderOptionTable const& common_options()
     };
     static RenderOptionTable const all = [&] {
         RenderOptionTable table{
-            common("bounces", {0, 1024},
-                   "indirect bounces; 0 = direct light only; what glass and mirrors pass on does not count",
+            common("bounces", {0, 1024}, "indirect bounces; 0 = direct light only; mirrors and glass do not count",
                    &S::bounces),
             common("filter", {"box", "tent"}, "pixel filter: box, one pixel wide; tent, a radius of one pixel",
                    &S::filter),

@@ -74,9 +74,9 @@ public:
     std::uint64_t show(ShownMoment) override { return 1; }
     std::optional<ShownMoment> next_shown() override { return {}; }
     void wake_by(std::function<void()>) override {}
-    void drawn(std::uint64_t, RanksShown) override {}
+    void drawn(std::uint64_t, ShownState) override {}
     void swapped(std::uint64_t, double) override {}
-    RanksShown ranks_shown() const override { return {}; }
+    ShownState shown_state() const override { return {}; }
 
 private:
     double seconds_;

@@ -60,7 +60,7 @@ protected:
         TextureTarget const to(TextureTarget::Format::bytes, kSize);
         DisplayPass pass;
         SurfaceDisplay display;
-        stretch(display.encoded(0, pass, eye, {}).target(), to.target());
+        stretch(display.encoded({}, pass, eye, {}).target(), to.target());
         std::vector<char> white;
         std::vector<unsigned char> const rgb = read_bytes(to.target());
         for (std::size_t i = 0; i < rgb.size(); i += 3) white.push_back(rgb[i] > 127);

@@ -27,7 +27,8 @@ protected:
         Surfaceless::TearDown();
     }
 
-    /// @param radiance  of all pixels  @param eye_x  of the camera, m  @return the red byte in the middle
+    /// @param radiance  of all pixels; the right eye, if there is one, has 1 less that  @param eye_x  of the camera, m
+    /// @return the red byte in the middle of the left side
     int show(std::uint64_t number, int still_frames, float radiance, double eye_x = 0)
     {
         auto frame = std::make_shared<LiveFrame>();
@@ -40,16 +41,21 @@ protected:
         gi::Picture picture{kSize.x, kSize.y, {}, {}};
         for (float& c : picture.add("color", 3).data) c = radiance;
         for (float& d : picture.add("depth", 1).data) d = 2;
-        frame->result.views.assign(frame->command.views.size(), {picture, {}, {}, {}});
+        frame->result.views.push_back({picture, {}, {}, {}});
+        if (frame->command.views.size() > 1) {
+            for (float& c : picture.layers[0].data) c = 1 - radiance;
+            frame->result.views.push_back({picture, {}, {}, {}});
+            frame->command.views[1].camera.world_from_camera[3].x += 0.06;
+        }
         presenter_->take(frame, panes_);
-        camera_ = view.camera;
+        cameras_.clear();
+        for (ViewCommand const& v : frame->command.views) cameras_.push_back(v.camera);
         return again();
     }
 
     int again()
     {
-        presenter_->draw(window_->target(), {0, 0}, panes_, settings_,
-                         {std::size_t(std::max(0, panes_[0].right) + 1), camera_});
+        presenter_->draw(window_->target(), {0, 0}, panes_, settings_, cameras_);
         return read_bytes(window_->target())[3 * std::size_t(kSize.x * kSize.y / 2)];
     }
 
@@ -57,7 +63,7 @@ protected:
     std::optional<TextureTarget> window_;
     std::optional<Presenter> presenter_;
     PresentSettings settings_;
-    gi::Camera camera_;
+    std::vector<gi::Camera> cameras_;
 };
 
 TEST_F(StillFadeTest, PicturesThatRefineFadeIn)
@@ -126,21 +132,41 @@ TEST_F(StillFadeTest, OtherViewsAndExposuresAreShownAtOnce)
 TEST_F(StillFadeTest, BothEyesFadeInForStereo)
 {
     panes_[0].right = 1;
-    for (StereoMode const mode : {StereoMode::side_by_side, StereoMode::rows, StereoMode::anaglyph_red_cyan}) {
-        panes_[0].stereo = mode;
-        EXPECT_EQ(show(1, 1, 0), 0);
-        int last = show(2, 2, 1);
-        for (int step = 2; step <= StillFade::kSteps / 2; ++step) {
-            EXPECT_TRUE(presenter_->fades()) << step;
-            int const next = again();
-            EXPECT_NEAR(next - last, 2 * 255.0 / StillFade::kSteps, 1.5) << step;
-            last = next;
+    std::size_t const middle = 3 * std::size_t(kSize.x * kSize.y / 2);
+    struct Mode {
+        StereoMode stereo;
+        std::size_t right; ///< a byte that shows the right eye alone
+    };
+    for (bool const swapped : {false, true})
+        for (auto const [stereo, right] : {Mode{StereoMode::side_by_side, middle + 3 * std::size_t(kSize.x - 1)},
+                                           Mode{StereoMode::anaglyph_red_cyan, middle + 1}}) {
+            panes_[0].stereo = stereo;
+            settings_.swap_eyes = swapped;
+            int const first = show(1, 1, 0), sign = swapped ? -1 : 1;
+            EXPECT_EQ(first, swapped ? 255 : 0);
+            int last = show(2, 2, 1);
+            for (int step = 2; step <= StillFade::kSteps / 2; ++step) {
+                EXPECT_TRUE(presenter_->fades()) << step;
+                int const next = again();
+                EXPECT_NEAR(sign * (next - last), 2 * 255.0 / StillFade::kSteps, 1.5) << step;
+                EXPECT_NEAR(read_bytes(window_->target())[right], 255 - next, 1) << step;
+                last = next;
+            }
+            EXPECT_EQ(last, 255 - first);
+            EXPECT_FALSE(presenter_->fades());
+            show(3, 1, 0.5f); // something moved: at once
+            EXPECT_FALSE(presenter_->fades());
         }
-        std::vector<unsigned char> const both = read_bytes(window_->target());
-        EXPECT_TRUE(std::ranges::all_of(both, [](unsigned char b) { return b == 255; })) << int(mode);
-        EXPECT_FALSE(presenter_->fades());
-        EXPECT_EQ(show(3, 1, 0), 0);
-    }
+}
+
+TEST_F(StillFadeTest, AMomentOfRanksThatIsDrawnAgainIsNoStep)
+{
+    show(1, 1, 0);
+    settings_.moment_number = 7;
+    int const first = show(2, 2, 1);
+    EXPECT_EQ(again(), first);
+    settings_.moment_number = 8;
+    EXPECT_GT(again(), first);
 }
 
 TEST_F(StillFadeTest, WallsFadeInBeforeTheyAreBent)
@@ -150,6 +176,12 @@ TEST_F(StillFadeTest, WallsFadeInBeforeTheyAreBent)
     EXPECT_EQ(show(1, 1, 0), 0);
     EXPECT_NEAR(show(2, 2, 1), 2 * 255.0 / StillFade::kSteps, 1.5);
     EXPECT_TRUE(presenter_->fades());
+    panes_[0].stereo = StereoMode::side_by_side; // both eyes have the one view
+    show(3, 1, 0);
+    show(4, 2, 1);
+    std::vector<unsigned char> const row = read_bytes(window_->target());
+    EXPECT_NEAR(row[0], 2 * 255.0 / StillFade::kSteps, 1.5);
+    EXPECT_EQ(row[0], row[3 * std::size_t(kSize.x - 1)]);
 }
 
 TEST_F(StillFadeTest, WithoutFadesPicturesAreThereAtOnce)

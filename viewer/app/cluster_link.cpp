@@ -22,12 +22,12 @@ enum class Said : std::uint8_t { light, done };
 static_assert(std::is_trivially_copyable_v<FrameWork>);
 
 /// As a rank tells the leader.
-std::string note_of(RanksShown const& own) { return {own.draw_surfaces ? '1' : '0', own.fade ? '1' : '0'}; }
+std::string note_of(ShownState const& own) { return {own.draws_surfaces ? '1' : '0', own.fades ? '1' : '0'}; }
 
-RanksShown joined(RanksShown const& all, std::string const& note)
+ShownState joined(ShownState const& all, std::string const& note)
 {
     bool const is_note = note.size() == 2;
-    return {all.draw_surfaces && is_note && note[0] == '1', all.fade || (is_note && note[1] == '1')};
+    return {all.draws_surfaces && is_note && note[0] == '1', all.fades || (is_note && note[1] == '1')};
 }
 
 } // namespace
@@ -225,7 +225,8 @@ bool ClusterLink::swap_together(Cluster& cluster)
     }
     if (!s.is_announced) {
         if (!is_drawn && Cluster::now_s() - s.since_s < kLongestDrawing_s) return false;
-        cluster.arrive(s.number, s.state, note_of(s.own));
+        // A picture that is not drawn in time may never be: it is not waited for.
+        cluster.arrive(s.number, s.state, note_of(is_drawn ? s.own : ShownState{s.own.draws_surfaces, false}));
         return s.is_announced = true;
     }
     if (!cluster.may_swap(s.number)) return false;
@@ -343,7 +344,7 @@ void ClusterLink::wake_by(std::function<void()> wake)
     wake_ = std::move(wake);
 }
 
-void ClusterLink::drawn(std::uint64_t number, RanksShown own)
+void ClusterLink::drawn(std::uint64_t number, ShownState own)
 {
     std::unique_lock lock(mutex_);
     showing_.drawn = number;
@@ -358,7 +359,7 @@ void ClusterLink::swapped(std::uint64_t number, double steady_s)
     swaps_.emplace_back(number, steady_s);
 }
 
-RanksShown ClusterLink::ranks_shown() const
+ShownState ClusterLink::shown_state() const
 {
     std::lock_guard const lock(mutex_);
     return all_shown_;

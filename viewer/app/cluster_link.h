@@ -31,9 +31,9 @@ public:
     std::uint64_t show(ShownMoment moment) override;
     std::optional<ShownMoment> next_shown() override;
     void wake_by(std::function<void()> wake) override;
-    void drawn(std::uint64_t number, RanksShown own) override;
+    void drawn(std::uint64_t number, ShownState own) override;
     void swapped(std::uint64_t number, double steady_s) override;
-    RanksShown ranks_shown() const override;
+    ShownState shown_state() const override;
 
     /// Swap skew, on the leader, valid after the end. failure(): why the link ended early; empty if it did not.
     SwapSkew const& skew() const { return skew_; }
@@ -53,7 +53,7 @@ private:
         std::uint64_t number = 0, drawn = 0, released = 0; ///< drawn, released: the last that was
         std::uint64_t state = 0;                           ///< of the orders until then
         bool is_announced = false;                         ///< leader: is sent; follower: is ready to swap
-        RanksShown own;
+        ShownState own;
         double since_s = 0;
     };
     void run();
@@ -77,7 +77,7 @@ private:
     mutable std::mutex mutex_; ///< of what follows
     std::condition_variable changed_, work_;
     bool has_begun_ = false, wants_end_ = false, leaves_ = false, is_over_ = false, is_ended_ = false;
-    RanksShown all_shown_;
+    ShownState all_shown_;
     bool leads_ = false; ///< constant once it has begun
     int rank_ = 0;
     std::exception_ptr error_;

@@ -61,7 +61,7 @@ void HmdEyes::draw(std::vector<EyeToDraw> const& eyes, gi::ToneMapSettings const
         eye.surfaces = nullptr;
         eye.depth = views_.depth(view, is_middle ? ViewPart::middle : ViewPart::whole);
         if (drawn.is_drawn)
-            eye.surfaces = &surface_display_->encoded(int(k), pass_, drawn, settings);
+            eye.surfaces = &surface_display_->encoded({0, int(k)}, pass_, drawn, settings);
         else
             pass_.draw(eye.target.target(), drawn, drawn, settings);
     }

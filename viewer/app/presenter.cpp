@@ -2,8 +2,8 @@
 
 #include "viewer/displays/compose.h"
 
-#include <algorithm>
 #include <epoxy/gl.h>
+#include <utility>
 
 namespace viewer {
 namespace {
@@ -65,20 +65,21 @@ bool Presenter::encodes(SeenView const& seen, DisplaySettings const& settings, D
 TextureTarget const& Presenter::encoded(std::size_t pane, SeenView const& seen, glm::ivec2 size_px,
                                         DisplaySettings settings, Drawing& d)
 {
-    std::pair const key(pane, seen.view);
+    ViewOfPane const key(pane, seen.view);
+    auto const [at, fresh] = d.encoded.try_emplace(key);
+    if (!fresh) return *at->second;
     StillFade& fade = fades_[key];
-    d.may_fade.insert(key);
-    settings.stereo = StereoMode::off;
     if (seen.picture.is_drawn) {
-        int const number = surface_numbers_.try_emplace(key, int(surface_numbers_.size())).first->second;
-        TextureTarget const& drawn = surface_display_->encoded(number, pass_, seen.picture, settings);
-        fade.show_surfaces(drawn, seen.camera, settings.tone);
-        return drawn;
+        at->second = &surface_display_->encoded(key, pass_, seen.picture, settings);
+        fade.show_surfaces(*at->second, seen.camera, settings.tone);
+        return *at->second;
     }
     if (!encodes(seen, settings, d)) fade.forget();
+    settings.stereo = StereoMode::off;
     LiveFrame const& f = views_.frame();
-    return fade.draw(pass_, fade_pass_, size_px, seen.picture, seen.camera,
-                     {f.command.frame, f.result.still_frames}, settings);
+    at->second = &fade.draw(pass_, fade_pass_, size_px, seen.picture, seen.camera,
+                            {f.command.frame, f.result.still_frames, d.settings.moment_number}, settings);
+    return *at->second;
 }
 
 void Presenter::show(std::size_t pane, DrawTarget const& to, SeenView const& left, SeenView const& right,
@@ -101,17 +102,18 @@ void Presenter::draw_faces(std::size_t number, Pane const& pane, PaneFaces const
         SeenView const seen = see(faces.views[k], d);
         glm::ivec2 const size = seen.picture.picture.size_px;
         if (seen.picture.picture.texture == 0) continue;
-        while (face_targets_.size() <= k) {
-            face_targets_.emplace_back(TextureTarget::Format::bytes, size);
-            face_px_.push_back(size);
+        ShownPicture face;
+        if (encodes(seen, settings, d)) {
+            face = encoded(number, seen, size, settings, d).shown();
+        } else {
+            while (face_targets_.size() <= k) face_targets_.emplace_back(TextureTarget::Format::bytes, size);
+            if (face_targets_[k].shown().size_px != size)
+                face_targets_[k] = TextureTarget(TextureTarget::Format::bytes, size);
+            pass_.draw(face_targets_[k].target(), seen.picture, seen.picture, settings);
+            face = face_targets_[k].shown();
         }
-        if (face_px_[k] != size) {
-            face_targets_[k] = TextureTarget(TextureTarget::Format::bytes, size);
-            face_px_[k] = size;
-        }
-        show(number, face_targets_[k].target(), seen, seen, settings, d);
         gi::Camera const& camera = views_.command(faces.views[k]).camera;
-        if (camera.off_axis) shown.push_back({faces.faces[k], *camera.off_axis, face_targets_[k].shown()});
+        if (camera.off_axis) shown.push_back({faces.faces[k], *camera.off_axis, face});
     }
     surfaces_[std::size_t(pane.wall)]->draw(flat_[side]->target(), shown, faces.eye_m);
 }
@@ -216,8 +218,8 @@ void Presenter::draw(DrawTarget const& whole, glm::ivec2 on_screen_px, std::vect
         settings.comparison = Comparison::off;
         pass_.draw(part, l, r, settings);
     }
-    for (auto& [seen, fade] : fades_)
-        if (!drawing.may_fade.contains(seen)) fade.forget();
+    std::erase_if(fades_, [&](auto const& f) { return !drawing.encoded.contains(f.first); });
+    if (surface_display_) surface_display_->keep(drawing.encoded);
 }
 
 } // namespace viewer

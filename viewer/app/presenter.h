@@ -11,8 +11,10 @@
 #include "viewer/displays/wall_ray.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
-#include <set>
+#include <map>
+#include <optional>
 
 namespace viewer {
 
@@ -54,6 +56,8 @@ struct PresentSettings {
     /// Side of surfaces drawn for a newer camera over that of the view; 0: pictures are reprojected.
     double surfaces_scale = 0;
     bool fades = false; ///< pictures of a head that stands still fade in
+    /// Of what ranks show together: drawn again, it fades no further. 0 = alone, each drawing is a step.
+    std::uint64_t moment_number = 0;
 };
 
 class Presenter {
@@ -85,11 +89,12 @@ private:
         gi::Camera camera;        ///< for which it is shown
         bool as_rendered = false; ///< that of the frame
     };
+    using ViewOfPane = SurfaceDisplay::Key;
     /// Of all panes.
     struct Drawing {
         PresentSettings const& settings;
         std::vector<gi::Camera> const& now;
-        std::set<std::pair<std::size_t, int>> may_fade; ///< as fades_
+        std::map<ViewOfPane, TextureTarget const*> encoded; ///< so far
     };
     SeenView see(int view, Drawing const& d);
     /// Of a pane: left and right, as they reach the eyes. Without textures: not shown.
@@ -115,12 +120,10 @@ private:
     std::deque<WallPass> walls_;
     std::deque<std::optional<SurfacePass>> surfaces_; ///< of the walls that have one
     std::deque<TextureTarget> face_targets_;
-    std::vector<glm::ivec2> face_px_;
     std::array<std::optional<TextureTarget>, 2> flat_, bent_;
     std::optional<SurfaceDisplay> surface_display_;
     FadePass fade_pass_;
-    std::map<std::pair<std::size_t, int>, StillFade> fades_;     ///< by the pane's place in draw(), and the view
-    std::map<std::pair<std::size_t, int>, int> surface_numbers_; ///< of surface_display_
+    std::map<ViewOfPane, StillFade> fades_;
     glm::ivec2 bent_px_{};
 };
 

@@ -74,11 +74,11 @@ std::vector<unsigned char> ShownReplay::bytes(EyeView const& left, EyeView const
     if (!target_ || target_->shown().size_px != a.size_px)
         target_.emplace(TextureTarget::Format::bytes, a.size_px);
     // As Presenter does.
-    if (left.is_drawn || right.is_drawn) {
+    bool const is_alone = a.mode == StereoMode::off;
+    if (settings.comparison == Comparison::off && (left.is_drawn || (!is_alone && right.is_drawn))) {
         if (!surface_display_) surface_display_.emplace();
-        TextureTarget const& l = surface_display_->encoded(0, pass_, left, settings);
-        TextureTarget const& r =
-            a.mode == StereoMode::off ? l : surface_display_->encoded(1, pass_, right, settings);
+        TextureTarget const& l = surface_display_->encoded({0, 0}, pass_, left, settings);
+        TextureTarget const& r = is_alone ? l : surface_display_->encoded({0, 1}, pass_, right, settings);
         SurfaceDisplay::compose(pass_, target_->target(), l, r, settings);
     } else {
         pass_.draw(target_->target(), left, right, settings);

@@ -5,12 +5,9 @@
 
 namespace viewer {
 
-void StillFade::fit(glm::ivec2 size_px)
+void StillFade::need(std::optional<TextureTarget>& target)
 {
-    if (before_ && size_px_ == size_px) return;
-    for (auto* target : {&before_, &after_, &mixed_}) target->emplace(TextureTarget::Format::bytes, size_px);
-    size_px_ = size_px;
-    if (surfaces_ == nullptr) forget();
+    if (!target) target.emplace(TextureTarget::Format::bytes, size_px_);
 }
 
 void StillFade::forget()
@@ -33,13 +30,19 @@ TextureTarget const& StillFade::draw(DisplayPass& pass, FadePass const& fade, gl
                                      EyeView const& view, gi::Camera const& camera, StillPicture picture,
                                      DisplaySettings const& settings)
 {
-    fit(size_px);
+    if (size_px_ != size_px) {
+        before_.reset(), after_.reset(), mixed_.reset();
+        if (surfaces_ == nullptr) forget();
+        size_px_ = size_px;
+    }
     bool const same_view = shown_ == camera && settings.tone == tone_,
                is_new = surfaces_ != nullptr || picture.frame != frame_,
                begins = same_view && is_new && (surfaces_ != nullptr || picture.still_frames > 1),
-               goes_on = same_view && !is_new && fades();
+               goes_on = same_view && !is_new && fades(),
+               is_again = picture.moment != 0 && picture.moment == moment_;
     if (begins) {
         if (surfaces_ != nullptr) {
+            need(before_);
             stretch(surfaces_->target(), before_->target());
         } else if (fades()) {
             fade.draw(mixed_->target(), before_->shown(), after_->shown(), share_);
@@ -50,13 +53,20 @@ TextureTarget const& StillFade::draw(DisplayPass& pass, FadePass const& fade, gl
         share_ = 0;
     }
     if (!begins && !goes_on) share_ = 1;
+    need(after_);
     if (!goes_on) pass.draw(after_->target(), view, view, settings);
-    if (fades()) share_ = std::min(share_ + float(std::max(picture.still_frames, 1)) / kSteps, 1.0f);
+    if (fades() && !(goes_on && is_again))
+        share_ = std::min(share_ + float(std::max(picture.still_frames, 1)) / kSteps, 1.0f);
     surfaces_ = nullptr;
     shown_ = camera;
     frame_ = picture.frame;
+    moment_ = picture.moment;
     tone_ = settings.tone;
-    if (!fades()) return *after_;
+    if (!fades()) {
+        before_.reset(), mixed_.reset();
+        return *after_;
+    }
+    need(mixed_);
     fade.draw(mixed_->target(), before_->shown(), after_->shown(), share_);
     return *mixed_;
 }

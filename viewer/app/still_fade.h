@@ -13,6 +13,7 @@ namespace viewer {
 struct StillPicture {
     std::uint64_t frame = 0; ///< another number for each
     int still_frames = 1;    ///< that it is the mean of; 1: something has moved before
+    std::uint64_t moment = 0; ///< PresentSettings::moment_number
 };
 
 /// What one eye sees in one pane, step by step. Belongs to the context that was current at its creation.
@@ -33,13 +34,13 @@ public:
     bool fades() const { return share_ < 1; }
 
 private:
-    void fit(glm::ivec2 size_px);
+    void need(std::optional<TextureTarget>& target);
 
     glm::ivec2 size_px_{0};
-    std::optional<TextureTarget> before_, after_, mixed_;
+    std::optional<TextureTarget> before_, after_, mixed_; ///< the first and the last while something fades in
     TextureTarget const* surfaces_ = nullptr; ///< that are shown; null: before_ and after_
     std::optional<gi::Camera> shown_;         ///< camera
-    std::uint64_t frame_ = 0;
+    std::uint64_t frame_ = 0, moment_ = 0;    ///< of what was shown last
     gi::ToneMapSettings tone_;
     float share_ = 1; ///< of after_ in what is shown
 };

@@ -8,14 +8,14 @@ SurfaceDisplay::SurfaceDisplay()
     outlines_.draw(to.target(), from.shown());
 }
 
-TextureTarget const& SurfaceDisplay::encoded(int number, DisplayPass& pass, EyeView const& eye,
+TextureTarget const& SurfaceDisplay::encoded(Key key, DisplayPass& pass, EyeView const& eye,
                                              DisplaySettings settings)
 {
     glm::ivec2 const size = eye.picture.size_px;
-    auto at = textures_.find(number);
+    auto at = textures_.find(key);
     if (at == textures_.end() || at->second.encoded.shown().size_px != size) {
         constexpr auto kBytes = TextureTarget::Format::bytes;
-        at = textures_.insert_or_assign(number, Textures{{kBytes, size}, {kBytes, size}}).first;
+        at = textures_.insert_or_assign(key, Textures{{kBytes, size}, {kBytes, size}}).first;
     }
     auto const& [encoded, smoothed] = at->second;
     settings.stereo = StereoMode::off;

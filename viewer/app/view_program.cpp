@@ -281,7 +281,7 @@ private:
         }
         at.views = std::move(layout.views);
         at.jump = state_.navigation.jump();
-        bool const can_draw = link_ != nullptr ? link_->ranks_shown().draw_surfaces : draws_surfaces_;
+        bool const can_draw = link_ != nullptr ? link_->shown_state().draws_surfaces : draws_surfaces_;
         if (can_draw && !state_.wants_screenshot && !core_.requests.wants_bytes() && state_.settings().reproject &&
             (link_ != nullptr || !shown_.windows.empty()))
             at.drawn_scale = surfaces_scale_.next();
@@ -364,8 +364,7 @@ private:
         bool const moved = !follows() && state_.settings().reproject && newest &&
                            (has_moved() || (newest->command.only_light && !shows(*newest))) &&
                            since_s > std::max({1 / kPresentation_Hz, kDrawings * draw_s_, pause_s});
-        bool const fades = !follows() && (link_ != nullptr ? link_->ranks_shown().fade : fades_) &&
-                           since_s > std::max(1 / kFades_Hz, pause_s);
+        bool const fades = !follows() && fades_ && since_s > std::max(1 / kFades_Hz, pause_s);
         bool const draws = prepares_ && since_s > 1 / kMessages_Hz;
         bool const flickers = state_.settings().view == "flicker" && since_s > 0.5 / kFlicker_Hz;
         bool const resized = std::any_of(shown_.windows.begin(), shown_.windows.end(),
@@ -444,6 +443,7 @@ private:
         else if (newest)
             p->moment = moment_of(*newest, p->begun_s, p->settings.surfaces_scale);
         if (p->moment) {
+            p->settings.moment_number = p->moment->number; // 0 on the leader: the link gives it
             p->settings.surfaces_scale = p->moment->surfaces_scale;
             p->settings.moment = p->moment->moment;
             p->settings.moment->views = own_views(p->moment->moment.views);
@@ -502,7 +502,7 @@ private:
     {
         if (link_ != nullptr && !follows() && p.moment) {
             try {
-                p.number = link_->show(*p.moment);
+                p.settings.moment_number = p.number = link_->show(*p.moment);
             } catch (gi::InputError const& e) {
                 p.not_shown = e.what();
             }
@@ -554,7 +554,7 @@ private:
     void presented(Presentation const& p)
     {
         prepares_ = p.prepares;
-        fades_ = p.fades;
+        fades_ = p.number > 0 ? link_->shown_state().fades : p.fades;
         draws_surfaces_ = p.can_draw;
         if (!p.why_no_surfaces.empty() && !std::exchange(no_surfaces_told_, true)) {
             core_.report.lose("surfaces not drawn, pictures are reprojected", 1, p.why_no_surfaces);

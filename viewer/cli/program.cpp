@@ -49,7 +49,7 @@ std::string suggest(std::string const& word, std::vector<std::string> const& kno
     return gi::nearest_word(word, known) ? gi::suggest(word, known) + " " + help : help;
 }
 
-/// What other renderers call options.
+/// What other renderers call options. Names alone: their numbers may count other things.
 constexpr std::pair<char const*, char const*> kNamesElsewhere[]{
     {"--spp", "--paths"},          {"--samples", "--paths"},       {"--depth", "--bounces"},
     {"--max-depth", "--bounces"},  {"--max-bounces", "--bounces"}, {"--integrator", "--method"},
@@ -80,8 +80,9 @@ gi::InputError describe(CLI::ParseError const& e, CLI::App const& app)
             std::vector<std::string> const names = option_names(*a);
             for (auto const& [other, own] : kNamesElsewhere)
                 if (word == other && std::ranges::find(names, own) != names.end())
-                    return {"'" + word + "' was not expected", misfit,
-                            fmt::format("here it is {}; {}", own, help)};
+                    return {
+                        "'" + word + "' was not expected", misfit,
+                        fmt::format("did you mean '{}', which has this meaning or a similar one? {}", own, help)};
             return {"'" + word + "' was not expected", misfit, suggest(word, names, help)};
         }
         a = given.empty() ? nullptr : given.back();

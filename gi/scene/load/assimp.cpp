@@ -20,18 +20,19 @@ namespace {
 struct ForeignFormat {
     char const *extension, *why, *suggestion;
 };
-constexpr char const* kSaveAsGltf = "save it as glTF (.glb) in the program that made it, or in Blender";
+constexpr char const* kSaveAsGltf = "save it as glTF (.glb), in Blender for example";
+constexpr char const* kModelled = "save it as glTF (.glb) in the program in which it was modelled";
 constexpr ForeignFormat kForeign[]{
     {".blend", "only Blender reads all of its own format", "save it as glTF in Blender: File, Export, glTF 2.0"},
     {".usd", "USD is not supported", kSaveAsGltf},
     {".usda", "USD is not supported", kSaveAsGltf},
     {".usdc", "USD is not supported", kSaveAsGltf},
     {".usdz", "USD is not supported", kSaveAsGltf},
-    {".pbrt", "scenes of PBRT are not supported", kSaveAsGltf}};
+    {".pbrt", "scenes of PBRT are not supported", kModelled}};
 
 std::string what_else(std::string const& extension)
 {
-    if (extension == ".xml") return std::string("if it is a scene of Mitsuba or another renderer: ") + kSaveAsGltf;
+    if (extension == ".xml") return std::string("if it is a scene of Mitsuba or another renderer: ") + kModelled;
     return Assimp::Importer().IsExtensionSupported(extension)
                ? "correct that place, or open it in Blender and export glTF (.glb), which is checked best"
                : "give glTF, YAML, OBJ, PLY, FBX or another format that Assimp supports";

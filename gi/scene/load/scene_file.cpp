@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 #include <fnmatch.h>
 #include <glm/gtc/matrix_transform.hpp>
-#include <strings.h>
 
 namespace gi {
 namespace {
@@ -175,8 +174,8 @@ private:
         bool const is_built_in = keys_of_generated().contains(at.text());
         fs::path const file = find_file(
             at, is_built_in ? "write generate: {kind: " + at.text() + "} instead of file" : "check the path");
-        bool const is_scene_file = strcasecmp(file.extension().c_str(), ".yaml") == 0 ||
-                                   strcasecmp(file.extension().c_str(), ".yml") == 0;
+        std::string const extension = lower_extension(file);
+        bool const is_scene_file = extension == ".yaml" || extension == ".yml";
         if (is_scene_file && t_depth == kDeepestInclusion)
             throw at.error("'" + file.string() + "' is not loaded",
                            fmt::format("scene files include each other {} deep", kDeepestInclusion),

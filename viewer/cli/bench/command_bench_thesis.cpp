@@ -1,8 +1,11 @@
 #include "gi/core/durable_file.h"
+#include "gi/core/error.h"
+#include "gi/core/progress.h"
 #include "gi/hit_buffers/settings.h"
 #include "gi/methods/registry.h"
 #include "gi/metrics/compare.h"
 #include "gi/scene/generate/generate.h"
+#include "viewer/base/interrupt.h"
 #include "viewer/bench/bench_record.h"
 #include "viewer/cli/commands.h"
 #include "viewer/offline/render_options.h"
@@ -12,6 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -87,7 +91,7 @@ struct Made {
 
 class Thesis {
 public:
-    explicit Thesis(ThesisOptions const& options) : o_(options)
+    Thesis(ThesisOptions const& options, StopRequest const& stop) : o_(options), stop_(stop)
     {
         table_ = start_table("thesis", "Tables 6.1 to 6.5 of Yu 2012, with the error beside each time",
                              {"table",           "triangles",
@@ -108,20 +112,29 @@ public:
             {"published", "Yu 2012, on a GeForce GTX 480; its models are a statue and others in a room"}};
     }
 
-    /// Throws InputError if no row is wanted.
+    /// Throws InputError if no row is wanted, Interrupted on a request to stop; finished rows are saved.
     void run()
     {
-        for (Row const& r : rows_of_thesis(o_.paths)) {
+        std::vector<Row> rows = rows_of_thesis(o_.paths);
+        std::erase_if(rows, [&](Row const& r) {
             bool const wanted = o_.tables.empty() || std::ranges::find(o_.tables, r.table) != o_.tables.end();
-            if (!wanted || r.triangles > o_.most_triangles || (o_.triangles > 0 && r.triangles != o_.triangles))
-                continue;
-            add(r);
-            write(table_, o_.out);
-        }
-        if (table_.rows.empty())
+            return !wanted || r.triangles > o_.most_triangles || (o_.triangles > 0 && r.triangles != o_.triangles);
+        });
+        if (rows.empty())
             throw InputError("none of these tables has a row with such a model",
                              "they are told apart by --tables, --triangles and --most-triangles",
                              "choose those of the thesis, e.g. --tables 6.1 --triangles 250000");
+        ProgressBar bar("thesis");
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            at_step_ = [&, k](char const* method, double done) {
+                Row const& r = rows[k];
+                bar.update(double(k) / double(rows.size()),
+                           fmt::format("table {}, {} triangles, {} paths: {} {:.0f} %", r.table, r.triangles,
+                                       r.paths, method, 100 * done));
+            };
+            add(rows[k]);
+            write(table_, o_.out);
+        }
     }
     BenchTable const& table() const { return table_; }
 
@@ -150,17 +163,23 @@ private:
         s.seed = seed;
         return s;
     }
+    RenderResult render(char const* method, RenderSettings const& s, std::string const& what, Report& report) const
+    {
+        RenderProgress const progress = [&](RenderStatus const& status) {
+            at_step_(what.c_str(), status.fraction);
+        };
+        RenderResult result = find_method(method).render(world_, world_.cameras.at(0), s, stop_, progress, report);
+        if (result.end == RenderEnd::interrupted) throw Interrupted();
+        return result;
+    }
     Picture const& reference(int size, int bounces)
     {
-        auto const [at, fresh] = references_.try_emplace({size, bounces});
-        if (fresh) {
-            Report unused;
-            at->second = find_method("reference")
-                             .render(world_, world_.cameras.at(0), settings(size, o_.reference_paths, bounces, 99),
-                                     {}, {}, unused)
-                             .picture;
-        }
-        return at->second;
+        auto const at = references_.find({size, bounces});
+        if (at != references_.end()) return at->second;
+        Report unused;
+        RenderResult const made =
+            render("reference", settings(size, o_.reference_paths, bounces, 99), "converged picture", unused);
+        return references_[{size, bounces}] = made.picture;
     }
     Made make(char const* method, RenderSettings const& s)
     {
@@ -169,10 +188,7 @@ private:
         RenderResult result;
         for (int k = 0; k < o_.repeats; ++k) {
             Report report;
-            frames.push_back(1e3 * seconds_of([&] {
-                                 result =
-                                     find_method(method).render(world_, world_.cameras.at(0), s, {}, {}, report);
-                             }));
+            frames.push_back(1e3 * seconds_of([&] { result = render(method, s, method, report); }));
             made.structures_ms = 0;
             for (auto const& [stage, seconds] : report.times())
                 if (stage.starts_with("build (")) made.structures_ms += 1e3 * seconds;
@@ -234,6 +250,8 @@ private:
     }
 
     ThesisOptions const& o_;
+    StopRequest const& stop_;
+    std::function<void(char const* what, double done)> at_step_;
     BenchTable table_;
     std::uint32_t triangles_ = 0;
     World world_;
@@ -245,8 +263,19 @@ int run(ThesisOptions const& o)
 {
     check_folder(o.out);
     gi::make_folder(o.out);
-    Thesis thesis(o);
-    thesis.run();
+    StopRequest stop;
+    InterruptGuard const guard(stop);
+    Thesis thesis(o, stop);
+    try {
+        thesis.run();
+    } catch (Interrupted const&) {
+        if (!thesis.table().rows.empty()) show(thesis.table(), o.out, o.json);
+        fmt::print(
+            stderr,
+            "note: interrupted: {} rows are saved; data/batch/thesis.yaml makes tasks of them, and goes on\n",
+            thesis.table().rows.size());
+        return interrupted_code();
+    }
     show(thesis.table(), o.out, o.json);
     return 0;
 }

@@ -78,10 +78,10 @@ struct FrameLight {
     std::shared_ptr<gi::LightCellTable const> cells; ///< the leader's; null = none
 };
 
-/// How ranks showed something.
-struct RanksShown {
-    bool draw_surfaces = false; ///< could draw those of their views
-    bool fade = false;          ///< are to draw again soon
+/// What a rank, or all of them together, say of the picture that they showed last.
+struct ShownState {
+    bool draws_surfaces = false; ///< those of all views could be drawn
+    bool fades = false;          ///< something fades in: draw again soon
 };
 
 /// Link to other processes that render the same frame commands and show the same moments: the ranks of a cluster.
@@ -113,10 +113,10 @@ public:
     /// Called when something new is there for next_shown(), or the session has ended, on any thread.
     virtual void wake_by(std::function<void()> wake) = 0;
     /// It is drawn here; returns when it is on all ranks.
-    virtual void drawn(std::uint64_t number, RanksShown own) = 0;
+    virtual void drawn(std::uint64_t number, ShownState own) = 0;
     virtual void swapped(std::uint64_t number, double steady_s) = 0;
     /// Leader: what they showed last: whether all could draw surfaces, and whether any fades.
-    virtual RanksShown ranks_shown() const = 0;
+    virtual ShownState shown_state() const = 0;
 };
 
 class LiveRenderer {
