@@ -5,8 +5,9 @@
 // one texel (a needle seen along its length) take n log n steps and no extra memory. Order: depth, then
 // primitive, as in fill_hit_buffer; this order is total, so that all spaces give the same buffer.
 
-#include "gi/kernel/atomics.h"
 #include "gi/hit_buffers/query.h"
+#include "gi/kernel/atomics.h"
+#include "gi/raster/raster_kernels.h"
 
 namespace gi {
 
@@ -53,16 +54,18 @@ GI_FN inline void sort_as_heap(HitLayer* v, std::size_t n)
 
 } // namespace layer_detail
 
-/// Item = texel.
+/// Item = cell of several rasters. The last one of each has no texel.
 struct SortLayers {
-    View<std::uint32_t const> offset; ///< texels + 1
-    View<HitLayer> layers;
+    View<LayerRaster const> rasters;
 
-    GI_FN void operator()(std::size_t t) const
+    GI_FN void operator()(std::size_t cell) const
     {
         constexpr std::size_t kFew = 24;
-        HitLayer* const first = layers.data + offset[t];
-        std::size_t const n = offset[t + 1] - offset[t];
+        LayerRaster const& raster = rasters[raster_of_cell(rasters, cell)];
+        std::size_t const t = cell - raster.first_cell;
+        if (t == raster.grid.texels()) return;
+        HitLayer* const first = raster.layers + raster.offset[t];
+        std::size_t const n = raster.offset[t + 1] - raster.offset[t];
         if (n <= kFew)
             layer_detail::sort_by_insertion(first, n);
         else
@@ -70,45 +73,54 @@ struct SortLayers {
     }
 };
 
-/// Item = texel. Moves the layers accepted by Keep(grid, triangle, texel, depth) to the front of the texel, at
-/// most `most`, and counts them.
+/// Item = cell. Moves the sorted layers accepted by all.seeded(seed)(grid, triangle, texel, depth) to the front of the
+/// texel, at most `most`, and counts them.
 template <class Keep>
 struct TrimLayers {
-    RasterGrid grid;
-    Keep keep;
-    std::uint32_t most;               ///< 0 = all
-    View<std::uint32_t const> offset; ///< texels + 1
-    View<HitLayer> layers;            ///< sorted
-    View<std::uint32_t> kept;         ///< per texel
-    View<std::uint64_t> lost;         ///< one number: layers beyond `most`
+    View<LayerRaster const> rasters;
+    Keep all;
+    std::uint32_t most;       ///< 0 = all
+    View<std::uint32_t> kept; ///< per cell
+    View<std::uint64_t> lost; ///< per raster: layers beyond `most`
 
-    GI_FN void operator()(std::size_t t) const
+    GI_FN void operator()(std::size_t cell) const
     {
+        std::uint32_t const of = raster_of_cell(rasters, cell);
+        LayerRaster const& raster = rasters[of];
+        RasterGrid const& grid = raster.grid;
+        std::size_t const t = cell - raster.first_cell;
+        kept[cell] = 0;
+        if (t == grid.texels()) return;
+        Keep const keep = all.seeded(raster.seed);
         std::uint32_t n = 0, beyond = 0;
-        HitLayer* const out = layers.data + offset[t];
-        for (std::uint32_t k = offset[t]; k < offset[t + 1]; ++k) {
-            HitLayer const layer = layers[k];
+        HitLayer* const out = raster.layers + raster.offset[t];
+        for (std::uint32_t k = raster.offset[t]; k < raster.offset[t + 1]; ++k) {
+            HitLayer const layer = raster.layers[k];
             if (!keep(grid, layer.primitive & kPrimitiveMask, std::uint32_t(t), layer.depth)) continue;
             if (most > 0 && n == most)
                 ++beyond;
             else
                 out[n++] = layer;
         }
-        kept[t] = n;
-        if (beyond > 0) atomic_add(lost[0], beyond);
+        kept[cell] = n;
+        if (beyond > 0) atomic_add(lost[of], beyond);
     }
 };
 
-/// Item = texel. Copies the front layers of every texel to a compact array.
+/// Item = cell. Copies the front layers of every texel to a compact array.
 struct PackLayers {
-    View<std::uint32_t const> from_offset, to_offset;
-    View<HitLayer const> from;
-    View<HitLayer> to;
+    View<LayerRaster const> from, to; ///< the same grids
 
-    GI_FN void operator()(std::size_t t) const
+    GI_FN void operator()(std::size_t cell) const
     {
-        std::uint32_t const n = to_offset[t + 1] - to_offset[t];
-        for (std::uint32_t k = 0; k < n; ++k) to[to_offset[t] + k] = from[from_offset[t] + k];
+        std::uint32_t const of = raster_of_cell(from, cell);
+        LayerRaster const &source = from[of], &packed = to[of];
+        std::size_t const t = cell - source.first_cell;
+        if (t == source.grid.texels()) return;
+        HitLayer const* const in = source.layers + source.offset[t];
+        HitLayer* const out = packed.layers + packed.offset[t];
+        std::uint32_t const n = packed.offset[t + 1] - packed.offset[t];
+        for (std::uint32_t k = 0; k < n; ++k) out[k] = in[k];
     }
 };
 

@@ -5,12 +5,6 @@
 
 namespace gi {
 
-bool device_present()
-{
-    int count = 0;
-    return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
-}
-
 namespace device {
 namespace {
 
@@ -36,6 +30,12 @@ bool has_pool()
 
 } // namespace
 
+bool present()
+{
+    int count = 0;
+    return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
+}
+
 void* allocate(std::size_t bytes)
 {
     void* pointer = nullptr;
@@ -52,7 +52,6 @@ void release(void* bytes) noexcept
         cudaFree(bytes);
 }
 
-
 void fill(void* bytes, unsigned char value, std::size_t count)
 {
     check_cuda(cudaMemset(bytes, value, count), "fill device memory");
@@ -62,6 +61,8 @@ void copy(void* to, void const* from, std::size_t count)
 {
     check_cuda(cudaMemcpy(to, from, count, cudaMemcpyDefault), "copy device memory");
 }
+
+void finish() { check_cuda(cudaDeviceSynchronize(), "wait for the device"); }
 
 } // namespace device
 } // namespace gi

@@ -6,11 +6,13 @@
 
 namespace gi::device {
 
+bool present();
 void* allocate(std::size_t bytes);
 void release(void* bytes) noexcept;
 void fill(void* bytes, unsigned char value, std::size_t count);
 /// Copies within the device or between device and host; the addresses determine the direction.
 void copy(void* to, void const* from, std::size_t count);
+void finish();
 /// Implemented in scan.cu and scan.cpp.
 void exclusive_scan(std::uint32_t const* in, std::uint32_t* out, std::size_t n);
 

@@ -2,7 +2,8 @@
 // Runs a kernel over n items. A kernel is a trivially copyable struct with operator()(std::size_t i) const,
 // written once in a header. The caller chooses the space that runs it; the kernel's views must lie in that space.
 
-#include "gi/kernel/space.h"
+#include "gi/kernel/device.h"
+#include "gi/kernel/device_work.h"
 
 #include <cstddef>
 #include <tbb/parallel_for.h>
@@ -10,7 +11,8 @@
 
 namespace gi {
 
-/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Returns when the device is done.
+/// Defined in launch.cuh; instantiated for each kernel in a .cu file of its own. Returns before the device is done:
+/// launches and copies of all threads follow each other there. In debug builds it waits.
 template <class Kernel>
 void launch_device(char const* name, std::size_t n, Kernel const& kernel);
 
@@ -34,7 +36,8 @@ void launch_host(std::size_t n, Kernel const& kernel)
 template <class Kernel>
 void launch(Space space, char const* name, std::size_t n, Kernel const& kernel)
 {
-    if (space == Space::host)
+    if (space == Space::device && n > 0) count_device::launches(name);
+    if (space == Space::host || is_device_simulated())
         launch_host(n, kernel);
     else if constexpr (kCudaBuild)
         launch_device(name, n, kernel);

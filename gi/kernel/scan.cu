@@ -13,7 +13,6 @@ void exclusive_scan(std::uint32_t const* in, std::uint32_t* out, std::size_t n)
     check_cuda(cub::DeviceScan::ExclusiveSum(nullptr, bytes, in, out, n), name);
     Buffer<char, Space::device> scratch(bytes);
     check_cuda(cub::DeviceScan::ExclusiveSum(scratch.view().data, bytes, in, out, n), name);
-    check_cuda(cudaDeviceSynchronize(), name);
 }
 
 } // namespace gi::device

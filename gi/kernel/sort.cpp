@@ -1,5 +1,8 @@
 #include "gi/kernel/sort.h"
 
+#include "gi/kernel/device.h"
+#include "gi/kernel/device_work.h"
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -27,6 +30,7 @@ namespace {
 
 constexpr int kDigitBits = 11, kDigits = (64 + kDigitBits - 1) / kDigitBits;
 constexpr std::size_t kBuckets = std::size_t(1) << kDigitBits;
+constexpr std::uint64_t kSortLaunches = 10; // of CUB for 64 bits: histogram, scan, 8 passes
 using Histogram = std::array<std::uint32_t, kBuckets>;
 
 /// One pass of a radix sort: counts per block, then moves in order.
@@ -60,7 +64,8 @@ void sort_pairs(Space space, View<std::uint64_t> keys, View<std::uint32_t> value
     std::size_t const n = keys.size();
     if (values.size() != n || scratch_keys.size() != n || scratch_values.size() != n)
         throw std::logic_error("keys, values and scratch memory of a sort differ in length");
-    if (space == Space::device)
+    if (space == Space::device && n > 0) count_device::launches("sort", kSortLaunches);
+    if (space == Space::device && !is_device_simulated())
         return device::sort_pairs(keys.data, values.data, scratch_keys.data, scratch_values.data, n);
     std::vector<Histogram> counts(std::size_t(std::max(1, tbb::this_task_arena::max_concurrency())));
     static_assert(kDigits % 2 == 0); // so that the result ends where it began

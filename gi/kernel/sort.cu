@@ -20,7 +20,6 @@ void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::uint64_t* scrat
         check_cuda(cudaMemcpy(keys, k.Current(), n * sizeof(*keys), cudaMemcpyDeviceToDevice), name);
         check_cuda(cudaMemcpy(values, v.Current(), n * sizeof(*values), cudaMemcpyDeviceToDevice), name);
     }
-    check_cuda(cudaDeviceSynchronize(), name);
 }
 
 } // namespace gi::device

@@ -15,7 +15,7 @@ std::vector<NearestTexel> draw(WorldView const& world, TriangleSoup const& soup,
     SoupView const triangles = view(soup);
     return download(cut_outs.none()
                         ? draw_nearest<Space::host>(triangles, grid)
-                        : draw_nearest<Space::host>(triangles, grid, KeepUncut{world, cut_outs.marked(), seed}));
+                        : draw_nearest<Space::host>(triangles, grid, seed, KeepUncut{world, cut_outs.marked()}));
 }
 
 /// The six faces of a cube around a point, without those that only light's dark side sees.

@@ -21,7 +21,9 @@ GI_FN inline bool is_there(WorldView const& world, std::uint32_t triangle, std::
 struct KeepUncut {
     WorldView world;
     View<std::uint8_t const> marked; ///< per triangle
-    std::uint32_t seed;
+    std::uint32_t seed = 0;
+
+    GI_FN KeepUncut seeded(std::uint32_t of_raster) const { return {world, marked, of_raster}; }
 
     template <class Grid>
     GI_FN bool operator()(Grid const& grid, std::uint32_t triangle, std::uint32_t texel, float depth) const

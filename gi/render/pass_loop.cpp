@@ -71,6 +71,17 @@ void PassLoop::resume(std::uint64_t print)
         load_checkpoint(settings_.checkpoint, sums_, print, &stop_, &report_);
 }
 
+/// Counts what the device was asked to do, per path of every pixel.
+void PassLoop::report_device(DeviceWork const& before, double paths)
+{
+    DeviceWork work = device_work();
+    work -= before;
+    report_.count("kernel launches per pass", double(work.launches) / paths);
+    report_.count("waits for the device per pass", double(work.waits) / paths);
+    report_.count("bytes to and from the device per pass",
+                  double(work.bytes_to_device + work.bytes_to_host) / paths);
+}
+
 RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
 {
     constexpr std::uint32_t kPathsForVariance = 16;
@@ -80,6 +91,7 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     bool is_saved = sums_.has_paths();
     double const earlier = sums_.seconds;
     RenderResult result;
+    DeviceWork const device_before = device_work();
     auto const first_pass = Clock::now();
     saved_ = first_pass;
     bool const watches = settings_.until_relmse > 0 || bool(progress_);
@@ -127,6 +139,8 @@ RenderResult PassLoop::run(std::uint64_t print, Pass const& pass)
     if (may_go_on) result.resumable = (!settings_.by_rows && save(print)) || is_saved;
     if (settings_.share.merge) settings_.share.merge(sums_);
     report_.add_time("trace", seconds_since(first_pass) - checkpoints_s_);
+    if (settings_.space == Space::device && sums_.paths > resumed)
+        report_device(device_before, double(sums_.paths - resumed));
     if (is_announced_) report_.add_time("checkpoints", checkpoints_s_);
     report_.lose("paths cut at 1024 surfaces", sums_.counts.cut_paths);
     report_.lose("path terms that were not finite, dropped", sums_.counts.invalid_paths);

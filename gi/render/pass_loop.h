@@ -2,6 +2,7 @@
 // The render loop of every method: runs passes until the requested paths, time or error is reached or the render
 // is interrupted; handles progress, checkpoints and the report of losses.
 
+#include "gi/kernel/device_work.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/render_settings.h"
 
@@ -51,6 +52,7 @@ private:
         return std::chrono::duration<double>(Clock::now() - start).count();
     }
     void announce_state();
+    void report_device(DeviceWork const& before, double paths);
     bool save(std::uint64_t print);
     bool is_checkpoint_due() const;
     std::uint32_t next_pass(double seconds_per_path) const;

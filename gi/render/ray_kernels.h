@@ -16,25 +16,36 @@ struct NearestHits {
     KernelRays rays;
     ColumnView<RayQuery> queries;
     ColumnView<Hit> hits;
+    View<std::uint32_t const> count; ///< [0]: of queries
 
     GI_FN void operator()(std::size_t i) const
     {
+        if (i >= count[0]) return;
         RayQuery const q = queries.load(i);
         if (q.reach > 0) hits.store(i, rays.nearest(world, q));
     }
 };
 
+/// The nearest hits of as many queries, then what is left of the light along as many shadow rays: in one launch, so
+/// that a device is not left idle between them.
 template <bool panes>
-struct ShadowRays {
+struct RaysOfPaths {
     WorldView world;
     KernelRays rays;
-    ColumnView<RayQuery> queries;
-    ColumnView<vec3> left; ///< of the light, see KernelRays::transmittance
+    ColumnView<RayQuery> queries, shadows;
+    ColumnView<Hit> hits;
+    ColumnView<vec3> left; ///< see KernelRays::transmittance
 
-    GI_FN void operator()(std::size_t i) const
+    GI_FN void operator()(std::size_t item) const
     {
-        RayQuery const q = queries.load(i);
-        if (q.reach > 0) left.store(i, rays.transmittance<panes>(world, q));
+        bool const asks_for_light = item >= queries.count;
+        std::size_t const i = asks_for_light ? item - queries.count : item;
+        RayQuery const q = asks_for_light ? shadows.load(i) : queries.load(i);
+        if (!(q.reach > 0)) return;
+        if (asks_for_light)
+            left.store(i, rays.transmittance<panes>(world, q));
+        else
+            hits.store(i, rays.nearest(world, q));
     }
 };
 

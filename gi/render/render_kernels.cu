@@ -6,8 +6,8 @@
 namespace gi {
 
 template void launch_device(char const*, std::size_t, AddSamples const&);
-template void launch_device(char const*, std::size_t, ShadowRays<false> const&);
-template void launch_device(char const*, std::size_t, ShadowRays<true> const&);
+template void launch_device(char const*, std::size_t, RaysOfPaths<false> const&);
+template void launch_device(char const*, std::size_t, RaysOfPaths<true> const&);
 template void launch_device(char const*, std::size_t, NearestHits const&);
 
 } // namespace gi

@@ -20,7 +20,15 @@ RasterShares<S> equal_shares(TriangleSoup const& soup, std::uint32_t each)
 {
     std::vector<std::uint32_t> before;
     for (std::uint32_t t = 0; t <= soup.count; ++t) before.push_back(t * (each - 1));
-    return {upload<S>(before), soup.count * each};
+    return {upload<S>(before), soup.count * each, std::uint32_t(soup.count)};
+}
+
+/// Those that raster_shares chooses for one grid.
+template <Space S>
+RasterShares<S> chosen_shares(SoupOn<S> const& there, RasterGrid const& grid)
+{
+    Buffer<LayerRaster, S> const raster = upload<S>(std::vector<LayerRaster>{{grid, 0, 0, nullptr, nullptr}});
+    return raster_shares<S>(there.view(), raster.view());
 }
 
 /// What CountLayers and FillLayers give.
@@ -29,15 +37,20 @@ std::vector<Fragment> kernel_fragments(SoupOn<S> const& there, RasterGrid const&
                                        RasterShares<S> const& shares)
 {
     std::size_t const texels = grid.texels();
-    Buffer<std::uint32_t, S> offset = upload<S>(std::vector<std::uint32_t>(texels + 1, 0)), next(texels + 1);
+    Buffer<std::uint32_t, S> counts = upload<S>(std::vector<std::uint32_t>(texels + 1, 0)), offset(texels + 1),
+                             next(texels + 1);
     Buffer<std::uint64_t, S> total = upload<S>(std::vector<std::uint64_t>{0});
+    Buffer<LayerRaster, S> rasters =
+        upload<S>(std::vector<LayerRaster>{{grid, 0, 0, offset.view().data, nullptr}});
     launch(S, "count layers", shares.items,
-           CountLayers{there.view(), grid, shares.view(), offset.view(), total.view()});
-    exclusive_scan(S, std::as_const(offset).view(), offset.view());
-    copy(offset, next);
+           CountLayers{there.view(), std::as_const(rasters).view(), shares.view(), counts.view(), total.view()});
+    exclusive_scan(S, std::as_const(counts).view(), counts.view());
     Buffer<HitLayer, S> layers = upload<S>(std::vector<HitLayer>(download(total)[0], HitLayer{NAN, 0xffffffffu}));
+    rasters = upload<S>(std::vector<LayerRaster>{{grid, 0, 0, offset.view().data, layers.view().data}});
+    launch(S, "offsets of layers", texels + 1,
+           StartLayers{std::as_const(rasters).view(), std::as_const(counts).view(), next.view(), {}});
     launch(S, "fill layers", shares.items,
-           FillLayers{there.view(), grid, shares.view(), next.view(), layers.view()});
+           FillLayers{there.view(), std::as_const(rasters).view(), shares.view(), next.view()});
 
     std::vector<std::uint32_t> const first = download(offset), end = download(next);
     std::vector<HitLayer> const filled = download(layers);
@@ -69,10 +82,9 @@ void check_layers()
         TriangleSoup const soup = make_soup(world);
         RasterGrid const grid = random_grid(world, rng, 5u << (mesh % 7));
         SoupOn<S> const there(soup);
-        auto const found =
-            kernel_fragments<S>(there, grid,
-                                mesh % 3 == 0 ? raster_shares<S>(there.view(), grid)
-                                              : equal_shares<S>(soup, 1 + std::uint32_t(mesh % 11)));
+        auto const found = kernel_fragments<S>(
+            there, grid,
+            mesh % 3 == 0 ? chosen_shares<S>(there, grid) : equal_shares<S>(soup, 1 + std::uint32_t(mesh % 11)));
         Fragments plain, vectors;
         rasterize_plain(soup, 0, soup.count, grid, MacroPath::linear_blocks, plain);
         ASSERT_EQ(found, sorted_layers(plain)); // bit for bit
@@ -95,7 +107,7 @@ void check_nothing()
     TriangleSoup const soup = make_soup(world);
     RasterGrid const grid = make_grid(world.bounds, vec3{0, 1, 0}, 16, {0, 0}, 0);
     SoupOn<S> const there(soup);
-    EXPECT_TRUE(kernel_fragments<S>(there, grid, raster_shares<S>(there.view(), grid)).empty());
+    EXPECT_TRUE(kernel_fragments<S>(there, grid, chosen_shares<S>(there, grid)).empty());
     std::vector<NearestTexel> const map = download(draw_nearest<S>(there.view(), grid));
     for (NearestTexel const& t : map) EXPECT_EQ(t.primitive, kNoPrimitive);
 }
@@ -118,7 +130,7 @@ void check_one_triangle()
     EXPECT_GT(plain.count, 1000u);
     for (std::uint32_t const shares : {1u, 2u, 7u, 64u, 1000u})
         EXPECT_EQ(kernel_fragments<S>(there, grid, equal_shares<S>(soup, shares)), sorted_layers(plain));
-    RasterShares<S> const chosen = raster_shares<S>(there.view(), grid);
+    RasterShares<S> const chosen = chosen_shares<S>(there, grid);
     EXPECT_GT(chosen.items, 100u); // so that none of them has many samples
     EXPECT_EQ(kernel_fragments<S>(there, grid, chosen), sorted_layers(plain));
 }

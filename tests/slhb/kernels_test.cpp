@@ -50,6 +50,34 @@ void check_build()
 }
 LIGHTWELL_TEST_BOTH(SlhbKernels, BuffersAreThoseOfTheCpu, check_build);
 
+/// Buffers of several grids that are built in the same launches.
+template <Space S>
+void check_together()
+{
+    Pcg32 rng(34, 0);
+    World const world = random_closed_mesh(rng, 4, 1.5f);
+    TriangleSoup const soup = make_soup(world);
+    SoupOn<S> const there(soup);
+    std::vector<RasterGrid> grids;
+    for (std::uint32_t k = 0; k < 9; ++k) grids.push_back(random_grid(world, rng, 3u << (k * 5 % 7)));
+    std::vector<std::uint32_t> const seeds(grids.size(), 0);
+    for (std::uint32_t const most : {0u, 2u}) {
+        DeviceWork const before = device_work();
+        auto const found = build_hit_buffers<S>(there.view(), grids, seeds, most);
+        DeviceWork work = device_work();
+        work -= before;
+        ASSERT_EQ(found.size(), grids.size());
+        for (std::size_t k = 0; k < grids.size(); ++k) {
+            HitBuffer const expected = expected_buffer(soup, grids[k], most);
+            ASSERT_EQ(found[k].grid.width, grids[k].width);
+            expect_equal(found[k], expected);
+        }
+        EXPECT_EQ(work.launches, S == Space::host ? 0u : most == 0 ? 9u : 14u);
+    }
+    EXPECT_TRUE(build_hit_buffers<S>(there.view(), {}, {}).empty());
+}
+LIGHTWELL_TEST_BOTH(SlhbKernels, BuffersOfManyGridsAreBuiltTogether, check_together);
+
 template <Space S>
 void check_no_layers()
 {
@@ -117,9 +145,13 @@ void check_sort()
         std::vector<HitLayer> expected = layers;
         for (std::size_t t = 0; t + 1 < offset.size(); ++t)
             std::sort(expected.begin() + offset[t], expected.begin() + offset[t + 1], before);
-        Buffer<std::uint32_t, S> const there = upload<S>(offset);
+        Buffer<std::uint32_t, S> there = upload<S>(offset);
         Buffer<HitLayer, S> sorted = upload<S>(layers);
-        launch(S, "sort layers", offset.size() - 1, SortLayers{there.view(), sorted.view()});
+        RasterGrid row;
+        row.width = std::uint32_t(offset.size()) - 1;
+        Buffer<LayerRaster, S> const raster =
+            upload<S>(std::vector<LayerRaster>{{row, 0, 0, there.view().data, sorted.view().data}});
+        launch(S, "sort layers", offset.size(), SortLayers{raster.view()});
         std::vector<HitLayer> const found = download(sorted);
         for (std::size_t k = 0; k < found.size(); ++k) {
             ASSERT_EQ(found[k].primitive, expected[k].primitive) << order << " " << k;

@@ -7,7 +7,8 @@
 
 namespace viewer {
 
-/// Stage times (s), counts, losses (count and first place) and peak memory (bytes).
+/// Stage times (s), counts, losses (count and first place), what the device was asked to do by the whole program,
+/// and peak memory (bytes).
 nlohmann::ordered_json to_json(gi::Report const& report);
 /// Prints one line per loss on stderr; what begins with "in doubt: " is used, and not called lost. @param whose  prefix of each loss, e.g. "rank 1: "; empty = this process
 void print_losses(gi::Report const& report, std::string const& whose = "");

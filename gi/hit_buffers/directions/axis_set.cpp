@@ -38,13 +38,27 @@ dquat random_rotation(std::uint64_t seed)
 
 } // namespace
 
-void AxisSet::build_elsewhere(std::size_t axis)
+void AxisSet::build_elsewhere(std::span<std::size_t const> slots)
 {
-    BuiltAxis const built = source_.elsewhere(axis, grids_[axis], cut_seeds_[axis]);
-    ++built_;
-    layers_ += built.layers;
-    lost_ += built.lost;
-    stale_[axis] = 0;
+    constexpr std::size_t kTogether = 64; // so that progress is shown, and a stop is answered
+    BuildStop const building(source_.stop);
+    for (std::size_t first = 0; first < slots.size(); first += kTogether) {
+        if (building.given_up()) throw Interrupted();
+        at_step("hit buffers", first, slots.size());
+        std::vector<AxisToBuild> axes;
+        for (std::size_t const s : slots.subspan(first, std::min(kTogether, slots.size() - first)))
+            axes.push_back({s, grids_[s], cut_seeds_[s]});
+        std::vector<BuiltAxis> const built = source_.elsewhere(axes);
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            ++built_;
+            layers_ += built[k].layers;
+            lost_ += built[k].lost;
+            bytes_[axes[k].slot] = built[k].bytes;
+            stale_[axes[k].slot] = 0;
+        }
+        if (std::accumulate(bytes_.begin(), bytes_.end(), std::size_t(0)) > source_.most_bytes)
+            throw HitBuffersTooLarge();
+    }
 }
 
 void AxisSet::build(std::vector<NewAxis> axes)
@@ -62,7 +76,6 @@ void AxisSet::build(std::vector<NewAxis> axes)
     std::atomic<std::size_t> begun = 0;
     auto const build_one = [&](std::size_t k) {
         if (bytes > source_.most_bytes || building.given_up()) return;
-        at_step("hit buffers", begun++, axes.size());
         NewAxis const& axis = axes[k];
         Pcg32 rng = Pcg32::for_path(source_.seed ^ 0x51a6, std::uint32_t(axis.slot), axis.number);
         vec2 const jitter = rng.uniform2();
@@ -72,9 +85,9 @@ void AxisSet::build(std::vector<NewAxis> axes)
         cut_seeds_[axis.slot] = rng.next();
         if (source_.elsewhere) {
             grids_[axis.slot] = grid;
-            build_elsewhere(axis.slot);
             return;
         }
+        at_step("hit buffers", begun++, axes.size());
         bytes -= bytes_of(buffers_[axis.slot]);
         BorrowedFragments fragments;
         rasterize(source_.soup, 0, std::min(source_.first_moving, source_.soup.count), grid, MacroPath::edge_table,
@@ -88,8 +101,13 @@ void AxisSet::build(std::vector<NewAxis> axes)
         if (std::exchange(moved_, false)) std::ranges::fill(stale_, 1);
         stale_.resize(buffers_.size());
         grids_.resize(buffers_.size());
-        for (std::size_t k = 0; k < axes.size(); ++k) build_one(k);
-        return;
+        bytes_.resize(buffers_.size());
+        std::vector<std::size_t> slots;
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            build_one(k);
+            slots.push_back(axes[k].slot);
+        }
+        return build_elsewhere(slots);
     }
     tbb::parallel_for(std::size_t(0), axes.size(), build_one);
     if (building.given_up()) throw Interrupted();
@@ -111,9 +129,10 @@ void AxisSet::move(std::span<std::uint8_t const> updated)
     bool const moved = std::exchange(moved_, false);
     if (source_.elsewhere) {
         if (moved) std::ranges::fill(stale_, 1);
+        std::vector<std::size_t> outdated;
         for (std::size_t a = 0; a < stale_.size(); ++a)
-            if (updated[a] != 0 && stale_[a] != 0) build_elsewhere(a);
-        return;
+            if (updated[a] != 0 && stale_[a] != 0) outdated.push_back(a);
+        return build_elsewhere(outdated);
     }
     if (moved) moving_.moved();
     lost_ += moving_.append({source_.soup, source_.first_moving, source_.cut_outs, source_.most_layers},

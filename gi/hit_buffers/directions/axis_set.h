@@ -92,6 +92,12 @@ class AxisSet {
 public:
     struct BuiltAxis {
         std::uint64_t layers = 0, lost = 0; ///< in all texels; beyond most_layers
+        std::size_t bytes = 0;
+    };
+    struct AxisToBuild {
+        std::size_t slot;
+        RasterGrid grid;
+        std::uint32_t cut_seed; ///< of cut-outs
     };
     /// Input from which all axes are built.
     struct Source {
@@ -103,10 +109,10 @@ public:
         std::uint32_t most_layers;
         bool packed;
         std::uint64_t seed;
-        /// If set, this callback builds each buffer from all triangles, and rebuilds it after dynamic geometry
-        /// changes. Arguments: slot of the axis, its grid, seed for the cut-outs. Called for one axis at a time.
-        std::function<BuiltAxis(std::size_t, RasterGrid const&, std::uint32_t)> elsewhere = {};
-        /// Limit for all buffers together while they are built; exceeding it throws HitBuffersTooLarge.
+        /// If set, this callback builds buffers from all triangles, and rebuilds them after dynamic geometry
+        /// changes.
+        std::function<std::vector<BuiltAxis>(std::span<AxisToBuild const>)> elsewhere = {};
+        /// Limit for all buffers together, on the host while they are built; exceeding it throws HitBuffersTooLarge.
         std::size_t most_bytes = ~std::size_t(0);
         /// If not null, store() checks it and throws Interrupted if a stop is requested.
         StopRequest const* stop = nullptr;
@@ -189,7 +195,7 @@ private:
     };
     /// The same axes in all levels. @param axes  of the coarsest
     void build(std::vector<NewAxis> axes);
-    void build_elsewhere(std::size_t axis);
+    void build_elsewhere(std::span<std::size_t const> slots);
     void move(std::span<std::uint8_t const> updated);
 
     Source source_;
@@ -198,6 +204,7 @@ private:
     std::vector<std::uint32_t> cut_seeds_; ///< per slot, of CutOuts
     std::vector<RasterGrid> grids_;        ///< per slot built by the callback `elsewhere`
     std::vector<std::uint8_t> stale_;      ///< per slot built by the callback: 1 = outdated after motion
+    std::vector<std::size_t> bytes_;       ///< per slot built by the callback
     MovingLayers moving_;
     AxisPool pool_;
     CosineTables tables_;

@@ -132,8 +132,11 @@ public:
             see_all(views);
             earlier = renderer_->rays(); // it may be a new renderer
             if constexpr (!kByKernels) renderer_->leave_out_punctual(leaves_out_punctual_);
-            for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
-                pass_of_views(sharing, nullptr);
+            if constexpr (kByKernels)
+                passes_of_views(paths, stop);
+            else
+                for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
+                    pass_of_views(sharing, nullptr);
         }
         std::vector<RenderResult> results(views.size());
         PathCounts lost;
@@ -164,12 +167,14 @@ public:
 private:
     void pass_of_views(VertexSharing sharing, StopRequest const* stop)
     {
-        on_threads(settings_.threads, [&] {
-            if constexpr (kByKernels)
-                renderer_->pass(passes_++, sums_, sharing);
-            else
-                renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::later));
-        });
+        on_threads(settings_.threads,
+                   [&] { renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::later)); });
+    }
+    /// By kernels: the sums stay where these run until all passes are done.
+    void passes_of_views(std::uint32_t paths, StopRequest const& stop)
+    {
+        on_threads(settings_.threads, [&] { renderer_->passes(passes_, paths, sums_, &stop); });
+        passes_ += sums_[0].paths;
     }
 
     /// Renders all paths of the views, or throws Interrupted and is as before.

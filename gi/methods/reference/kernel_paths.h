@@ -123,7 +123,7 @@ public:
                 return AddToMeans{sums_.means(), sums.paths + path};
             },
             [](std::uint32_t) {});
-        sums_.give(sums);
+        sums_.give(sums, sums.paths + pass.done());
         return counts;
     }
 
@@ -176,6 +176,15 @@ private:
         WorldView const& world = all.steps.world;
         KernelRays const rays = bvh_->rays();
         bool const panes = has_panes(world_);
+        auto const trace = [&] {
+            if (panes)
+                launch(S, "rays of paths", 2 * std::size_t(n),
+                       RaysOfPaths<true>{world, rays, all.queries, all.shadows, all.hits, all.left});
+            else
+                launch(S, "rays of paths", 2 * std::size_t(n),
+                       RaysOfPaths<false>{world, rays, all.queries, all.shadows, all.hits, all.left});
+        };
+        auto const scatter = [&] { launch(S, "scatter paths", n, ScatterPaths<Samples>{{all, to}}); };
         memory_.take_none();
         launch(S, "start paths", n, StartPaths{all});
         for (;;) {
@@ -186,21 +195,15 @@ private:
             if (idle == n) return all.paths;
             if (n - idle <= few) {
                 if (panes)
-                    launch(S, "finish paths", n, FinishPaths<true>{{all}, rays});
+                    launch(S, "finish paths", n, FinishPaths<Samples, true>{{all, to}, rays});
                 else
-                    launch(S, "finish paths", n, FinishPaths<false>{{all}, rays});
-                launch(S, "scatter paths", n, ScatterPaths{all});
-                launch(S, "end paths", n, EndPaths<Samples>{all, to});
+                    launch(S, "finish paths", n, FinishPaths<Samples, false>{{all, to}, rays});
+                scatter();
                 continue;
             }
             for (int k = 0; k < kSteps; ++k) {
-                launch(S, "rays of paths", n, NearestHits{world, rays, all.queries, all.hits});
-                launch(S, "scatter paths", n, ScatterPaths{all});
-                if (panes)
-                    launch(S, "shadow rays of paths", n, ShadowRays<true>{world, rays, all.shadows, all.left});
-                else
-                    launch(S, "shadow rays of paths", n, ShadowRays<false>{world, rays, all.shadows, all.left});
-                launch(S, "end paths", n, EndPaths<Samples>{all, to});
+                trace();
+                scatter();
             }
         }
     }

@@ -5,10 +5,11 @@
 namespace gi {
 
 template void launch_device(char const*, std::size_t, StartPaths const&);
-template void launch_device(char const*, std::size_t, ScatterPaths const&);
-template void launch_device(char const*, std::size_t, FinishPaths<false> const&);
-template void launch_device(char const*, std::size_t, FinishPaths<true> const&);
-template void launch_device(char const*, std::size_t, EndPaths<AddToMeans> const&);
-template void launch_device(char const*, std::size_t, EndPaths<KeepSamples> const&);
+template void launch_device(char const*, std::size_t, ScatterPaths<AddToMeans> const&);
+template void launch_device(char const*, std::size_t, ScatterPaths<KeepSamples> const&);
+template void launch_device(char const*, std::size_t, FinishPaths<AddToMeans, false> const&);
+template void launch_device(char const*, std::size_t, FinishPaths<AddToMeans, true> const&);
+template void launch_device(char const*, std::size_t, FinishPaths<KeepSamples, false> const&);
+template void launch_device(char const*, std::size_t, FinishPaths<KeepSamples, true> const&);
 
 } // namespace gi

@@ -1,9 +1,9 @@
 #pragma once
 // The path tracer by kernels, with exact rays through the project's own BVH. Many paths are on their way together,
-// each in a slot, from one surface to the next: all their rays (NearestHits), all their scatterings, all their
-// shadow rays (ShadowRays). A slot whose path ends takes the next one, so that none waits for the longest (Novak
-// et al. 2010); samples of a pixel are added in the order of its paths. Steps and random numbers are those of
-// PathTracer, so that both trace the same paths up to rounding.
+// each in a slot, from one surface to the next, by two launches: all their rays (RaysOfPaths), those to lights from the
+// surface before among them, then all their scatterings. A slot whose path ends takes the next one, so that none waits
+// for the longest (Novak et al. 2010); samples of a pixel are added in the order of its paths. Steps and random
+// numbers are those of PathTracer, so that both trace the same paths up to rounding.
 
 #include "gi/kernel/atomics.h"
 #include "gi/methods/reference/path_steps.h"
@@ -22,7 +22,7 @@ struct KeepSamples {
 enum class PathStage : std::uint32_t {
     goes_on,
     ended,
-    may_add, ///< ended, and all paths before it at its pixel are added
+    may_add, ///< ended, and all paths before it at its pixel are added, by an earlier launch
     idle     ///< all paths are taken
 };
 
@@ -125,21 +125,19 @@ struct StartPaths : PathSlots {
     }
 };
 
-/// From the surface that a path met to its next ray, and the shadow ray of the light there.
-struct ScatterPaths : PathSlots {
-    GI_FN void operator()(std::size_t i) const
-    {
-        PathSlot s = slots.load(i);
-        if (s.stage == PathStage::idle) return;
-        if (s.stage == PathStage::goes_on)
-            scatter(i, s);
-        else
-            shadows.store(i, no_query()); // it has been answered; the path waits for its turn
-        if (s.stage == PathStage::ended && added[s.pixel] == s.number) s.stage = PathStage::may_add;
-        slots.store(i, s);
-    }
+/// What a step does with a path. @tparam Samples  where samples go
+template <class Samples>
+struct SlotStep : PathSlots {
+    Samples samples;
 
 protected:
+    /// Adds the light of the last surface that is not in shadow.
+    GI_FN void light(std::size_t i) const
+    {
+        vec3 const comes = shadows.load(i).reach > 0 ? left.load(i) : vec3{0};
+        if (comes != vec3{0}) lights.store(i, lit(lights.load(i), comes));
+    }
+    /// From the surface that a path met to its next ray, and the shadow ray of the light there.
     GI_FN void scatter(std::size_t i, PathSlot& s) const
     {
         Path p;
@@ -172,44 +170,10 @@ protected:
         s.stage = PathStage::ended;
         queries.store(i, no_query());
     }
-};
-
-/// Traces paths to their ends: the last ones are too few to fill a device. @tparam panes  see ShadowRays
-template <bool panes>
-struct FinishPaths : ScatterPaths {
-    KernelRays rays;
-
-    GI_FN void operator()(std::size_t i) const
+    /// Adds the sample of a path, and takes the next one.
+    GI_FN void end(std::size_t i, PathSlot& s) const
     {
-        PathSlot s = slots.load(i);
-        if (s.stage != PathStage::goes_on) return;
-        do {
-            hits.store(i, rays.nearest(steps.world, queries.load(i)));
-            scatter(i, s);
-            RayQuery const shadow = shadows.load(i);
-            if (!(shadow.reach > 0)) continue;
-            vec3 const comes = rays.transmittance<panes>(steps.world, shadow);
-            if (comes != vec3{0}) lights.store(i, lit(lights.load(i), comes));
-        } while (s.stage == PathStage::goes_on);
-        slots.store(i, s);
-    }
-};
-
-/// Adds the light that is not in shadow; where a path has ended, its sample, and starts the next.
-template <class Samples>
-struct EndPaths : PathSlots {
-    Samples samples;
-
-    GI_FN void operator()(std::size_t i) const
-    {
-        PathSlot s = slots.load(i);
-        if (s.stage == PathStage::idle) return;
-        vec3 const comes = shadows.load(i).reach > 0 ? left.load(i) : vec3{0};
-        bool const is_lit = comes != vec3{0}, may_add = s.stage == PathStage::may_add;
-        if (!is_lit && !may_add) return;
-        PathLight light = lights.load(i);
-        if (is_lit) light = lit(light, comes);
-        if (!may_add) return lights.store(i, light);
+        PathLight const light = lights.load(i);
         FirstSurface const at = seen.load(i);
         PathSample sample;
         sample.radiance = light.radiance;
@@ -224,7 +188,55 @@ struct EndPaths : PathSlots {
         samples.add(s.pixel, s.number, sample);
         added[s.pixel] = s.number + 1;
         take_path(i, s);
-        slots.store(i, s);
+    }
+};
+
+/// One surface further.
+template <class Samples>
+struct ScatterPaths : SlotStep<Samples> {
+    GI_FN void operator()(std::size_t i) const
+    {
+        PathSlot s = this->slots.load(i);
+        if (s.stage == PathStage::idle) return;
+        this->light(i);
+        if (s.stage == PathStage::may_add)
+            this->end(i, s);
+        else if (s.stage == PathStage::goes_on)
+            this->scatter(i, s);
+        else
+            this->shadows.store(i, no_query()); // it has been answered; the path waits for its turn
+        if (s.stage == PathStage::ended && this->added[s.pixel] == s.number) s.stage = PathStage::may_add;
+        this->slots.store(i, s);
+    }
+};
+
+/// Traces paths to their ends: the last ones are too few to fill a device. @tparam panes  see KernelRays
+template <class Samples, bool panes>
+struct FinishPaths : SlotStep<Samples> {
+    KernelRays rays;
+
+    GI_FN void operator()(std::size_t i) const
+    {
+        PathSlot s = this->slots.load(i);
+        if (s.stage == PathStage::idle) return;
+        add_light(i);
+        while (s.stage == PathStage::goes_on) {
+            this->hits.store(i, rays.nearest(this->steps.world, this->queries.load(i)));
+            this->scatter(i, s);
+            add_light(i);
+        }
+        if (s.stage == PathStage::ended && this->added[s.pixel] == s.number) s.stage = PathStage::may_add;
+        this->slots.store(i, s);
+    }
+
+private:
+    GI_FN void add_light(std::size_t i) const
+    {
+        RayQuery const shadow = this->shadows.load(i);
+        if (!(shadow.reach > 0)) return;
+        vec3 const comes = rays.template transmittance<panes>(this->steps.world, shadow);
+        if (comes != vec3{0}) this->lights.store(i, lit(this->lights.load(i), comes));
+        this->shadows.store(i, no_query());
     }
 };
 

@@ -34,10 +34,12 @@ struct Options {
 };
 
 template <class Work>
-double seconds(Work const& work)
+double seconds(Space space, Work const& work)
 {
+    finish(space);
     auto const start = std::chrono::steady_clock::now();
     work();
+    finish(space);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -48,7 +50,7 @@ double time_of(Space space, Work const& work)
     int const warm_up = space == Space::device ? 3 : 0, repeats = space == Space::device ? 21 : 3;
     for (int k = 0; k < warm_up; ++k) work();
     std::vector<double> s;
-    for (int k = 0; k < repeats; ++k) s.push_back(seconds(work));
+    for (int k = 0; k < repeats; ++k) s.push_back(seconds(space, work));
     return median(s);
 }
 
@@ -140,8 +142,8 @@ Truth by_embree(ExactVisibility const& exact, Asked const& asked, float any_reac
         });
     };
     nearest();
-    t.nearest_s = seconds(nearest);
-    t.any_s = seconds([&] {
+    t.nearest_s = seconds(Space::host, nearest);
+    t.any_s = seconds(Space::host, [&] {
         in_parts([&](std::size_t first, std::size_t count) {
             exact.occluded(std::span(near).subspan(first, count), std::span(t.blocked).subspan(first, count));
         });
@@ -203,7 +205,7 @@ private:
     {
         auto const build = [&] { bvh_.emplace(there_.view(), false, 0); }; // all in the tree that can be refitted
         build();
-        double const build_s = seconds(build), refit_s = time_of(S, [&] { bvh_->moved(there_.view()); });
+        double const build_s = seconds(S, build), refit_s = time_of(S, [&] { bvh_->moved(there_.view()); });
         Bvh<S> const& tree = bvh_->moving();
         fmt::print("  BVH: build {:.2f} ms, refit {:.3f} ms, {:.1f} MiB, depth {}\n", 1e3 * build_s, 1e3 * refit_s,
                    double(tree.bytes()) / 0x1p20, tree.level.size() - 1);
@@ -217,7 +219,7 @@ private:
             RasterGrid const grid =
                 make_grid(world_.bounds, vec3(directions_.axes[a]), kResolution, {0.3f, 0.6f}, float(a));
             HitBufferOn<S> b;
-            s.push_back(seconds([&] { b = build_hit_buffer<S>(soup_there_.view(), grid); }));
+            s.push_back(seconds(S, [&] { b = build_hit_buffer<S>(soup_there_.view(), grid); }));
             layers += b.layers.size();
             texels += grid.texels();
             buffers_.push_back(std::move(b));

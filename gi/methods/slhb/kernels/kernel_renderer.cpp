@@ -62,9 +62,7 @@ template <Space S>
 void KernelRenderer<S>::make_axes()
 {
     scene_.forget_axes();
-    auto const build = [this](std::size_t a, RasterGrid const& grid, std::uint32_t seed) {
-        return scene_.build_axis(a, grid, seed);
-    };
+    auto const build = [this](std::span<AxisSet::AxisToBuild const> axes) { return scene_.build_axes(axes); };
     axes_.make({.bounds = traced_.grid_bounds,
                 .windows = traced_.windows.boxes(),
                 .soup = traced_.soup,
@@ -74,6 +72,7 @@ void KernelRenderer<S>::make_axes()
                 .packed = false,
                 .seed = settings_.seed,
                 .elsewhere = build,
+                .most_bytes = std::size_t(slhb_.memory_mib) << 20,
                 .first_moving = traced_.first_moving},
                walks());
 }
@@ -149,15 +148,19 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
     {
         StageTimer const timer(report_, "shadow maps");
         light_points_->refresh(index);
+        finish(S);
     }
     StageTimer const timer(report_, "G-buffer");
+    std::vector<PerspectiveGrid> grids;
     for (View& v : views_) {
         v.eye = eye_of_pass(v.rays, settings_.seed, index);
         v.index = index;
-        PerspectiveGrid const grid = camera_grid(
-            v.eye, v.width, v.height, place_in_pixel(v.filter, settings_.seed, index), near_plane(world_.bounds));
-        v.primary = scene_.draw(grid, std::uint32_t(mix_bits(settings_.seed) + index));
+        grids.push_back(camera_grid(v.eye, v.width, v.height, place_in_pixel(v.filter, settings_.seed, index),
+                                    near_plane(world_.bounds)));
     }
+    auto drawn = scene_.draw(grids, std::uint32_t(mix_bits(settings_.seed) + index));
+    for (std::size_t k = 0; k < views_.size(); ++k) views_[k].primary = std::move(drawn[k]);
+    finish(S);
 }
 
 template <Space S>
@@ -167,7 +170,15 @@ void KernelRenderer<S>::passes(std::uint32_t index, std::uint32_t count, std::sp
     for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.take(sums[k]);
     for (std::uint32_t i = 0; i < count && !(i > 0 && stop && stop->requested()); ++i) add_pass(index + i, sums);
     StageTimer const timer(report_, "paths");
-    for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.give(sums[k]);
+    PathKernelCounts const done = scene_.take_counts();
+    sums[0].counts.cut_paths += done.cut_paths; // of all views, which are reported together
+    sums[0].counts.invalid_paths += done.invalid_paths;
+    queries_ += done.queries;
+    exact_rays_ += done.exact_rays;
+    shadow_lookups_ += done.shadow_lookups;
+    doubtful_queries_ += done.doubtful_queries;
+    doubtful_shadows_ += done.doubtful_shadows;
+    for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.give(sums[k], sums[k].paths);
 }
 
 template <Space S>
@@ -194,17 +205,10 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         paths.pass = index;
         v.sums.add(scene_.trace(paths));
         ++to.paths;
-        PathKernelCounts const& done = scene_.counts();
-        to.counts.cut_paths += done.cut_paths;
-        to.counts.invalid_paths += done.invalid_paths;
-        queries_ += done.queries;
-        exact_rays_ += done.exact_rays;
-        shadow_lookups_ += done.shadow_lookups;
-        doubtful_queries_ += done.doubtful_queries;
-        doubtful_shadows_ += done.doubtful_shadows;
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
     }
+    finish(S);
 }
 
 template <Space S>

@@ -23,6 +23,7 @@ public:
     KernelScene(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t most_layers)
         : world_(world), soup_(soup), marked_(upload<S>(cut_outs.marked())), most_layers_(most_layers)
     {
+        forget_counts();
     }
 
     /// Copies the changes. Coverage (transparency) must not have changed. @param soup  current triangles
@@ -42,13 +43,26 @@ public:
         if (needed) bvh_.emplace(world_.view(), alpha_tests, first_moving);
     }
 
-    AxisSet::BuiltAxis build_axis(std::size_t a, RasterGrid const& grid, std::uint32_t seed)
+    std::vector<AxisSet::BuiltAxis> build_axes(std::span<AxisSet::AxisToBuild const> axes)
     {
-        if (axes_.size() <= a) axes_.resize(a + 1);
-        with_cut_outs(seed, [&](auto const& keep) {
-            axes_[a] = build_hit_buffer<S>(soup_.view(), grid, most_layers_, keep);
+        std::vector<RasterGrid> grids;
+        std::vector<std::uint32_t> seeds;
+        for (AxisSet::AxisToBuild const& a : axes) {
+            if (axes_.size() <= a.slot) axes_.resize(a.slot + 1);
+            axes_[a.slot] = {}; // first, as both together may be too much
+            grids.push_back(a.grid);
+            seeds.push_back(a.cut_seed);
+        }
+        std::vector<HitBufferOn<S>> built;
+        with_cut_outs([&](auto const& keep) {
+            built = build_hit_buffers<S>(soup_.view(), grids, seeds, most_layers_, keep);
         });
-        return {axes_[a].layers.size(), axes_[a].lost};
+        std::vector<AxisSet::BuiltAxis> sizes;
+        for (std::size_t k = 0; k < axes.size(); ++k) {
+            sizes.push_back({built[k].layers.size(), built[k].lost, built[k].bytes()});
+            axes_[axes[k].slot] = std::move(built[k]);
+        }
+        return sizes;
     }
 
     /// Those that are built from now on may be fewer.
@@ -57,17 +71,20 @@ public:
     void draw_light_points(LightPoints::DeviceDraw const& now)
     {
         maps_.resize(now.light_points.size());
+        FacesToDraw<RasterGrid> levels;
+        FacesToDraw<PerspectiveGrid> faces;
         for (std::size_t const k : now.drawn) {
             LightPoint const& light_point = now.light_points[k];
+            ShadowMap const& shadow = light_point.shadow;
             for (std::size_t f = 0; f < 6; ++f) {
-                bool const empty = light_point.view.parallel
-                                       ? int(f) >= light_point.shadow.levels
-                                       : sees_only_dark(light_point.view, light_point.shadow.faces[f]);
-                maps_[k][f] = empty                       ? Buffer<NearestTexel, S>()
-                              : light_point.view.parallel ? draw(light_point.shadow.grids[f], now.seed)
-                                                          : draw(light_point.shadow.faces[f], now.seed);
+                maps_[k][f] = {};
+                if (!light_point.view.parallel && !sees_only_dark(light_point.view, shadow.faces[f]))
+                    faces.add(shadow.faces[f], k, f);
+                if (light_point.view.parallel && int(f) < shadow.levels) levels.add(shadow.grids[f], k, f);
             }
         }
+        draw_faces(levels, now.seed);
+        draw_faces(faces, now.seed);
         std::vector<LightPointView> views(now.light_points.size());
         for (std::size_t k = 0; k < views.size(); ++k) {
             LightPoint const& light_point = now.light_points[k];
@@ -90,12 +107,10 @@ public:
         light_points_ = {};
     }
 
-    template <class Grid>
-    Buffer<NearestTexel, S> draw(Grid const& grid, std::uint32_t seed) const
+    /// First surfaces of views. @param seed  of cut-outs
+    std::vector<Buffer<NearestTexel, S>> draw(std::span<PerspectiveGrid const> grids, std::uint32_t seed) const
     {
-        Buffer<NearestTexel, S> map;
-        with_cut_outs(seed, [&](auto const& keep) { map = draw_nearest<S>(soup_.view(), grid, keep); });
-        return map;
+        return draw_all(grids, std::vector<std::uint32_t>(grids.size(), seed));
     }
 
     /// Sets the data shared by all paths of a pass. @param chances  of the light points; empty = equal
@@ -125,8 +140,6 @@ public:
     {
         std::size_t const pixels = paths.primary.size();
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
-        constexpr std::size_t kCounts = 1024; // threads that add to one number wait for each other
-        Buffer<PathKernelCounts, S> counts = upload<S>(std::vector<PathKernelCounts>(kCounts));
         paths.world = world_.view();
         paths.axes = std::as_const(axis_views_).view();
         paths.axes_of_level = axes_of_level_;
@@ -134,7 +147,7 @@ public:
         paths.light_points = std::as_const(light_points_).view();
         paths.chances = {std::as_const(chances_).view()};
         paths.samples = samples_.view();
-        paths.counts = counts.view();
+        paths.counts = counts_.view();
         std::size_t const most = std::min(pixels, kMostOnWay);
         if (on_way_[0].size() != most || on_way_[0].has_rays() != bvh_.has_value())
             for (OnWay& w : on_way_) {
@@ -147,15 +160,22 @@ public:
             trace_all<true>(paths);
         else
             trace_all<false>(paths);
-        counts_ = {};
-        for (PathKernelCounts const& c : download(counts)) counts_ += c;
         return std::as_const(samples_).view();
     }
-
-    PathKernelCounts const& counts() const { return counts_; } ///< of the last trace
+    /// Of the paths traced since the last call.
+    PathKernelCounts take_counts()
+    {
+        PathKernelCounts sum;
+        for (PathKernelCounts const& c : download(counts_)) sum += c;
+        forget_counts();
+        return sum;
+    }
 
 private:
-    /// All paths one surface further, again and again, and the last few to their ends.
+    void forget_counts() { fill_bytes(S, counts_.view().data, 0, counts_.size() * sizeof(PathKernelCounts)); }
+
+    /// All paths one surface further, again and again, and the last few to their ends. How many go on from the first
+    /// surfaces is not asked, as the host would wait for the answer.
     template <bool by_rays>
     void trace_all(PassOfPaths& paths)
     {
@@ -167,13 +187,17 @@ private:
             paths.doubtful = none_doubtful();
             launch(S, "first steps of paths", all, FirstSteps<by_rays>{{paths}});
             add_doubtful_light(all, rays, paths);
-            for (int now = 0; std::size_t const n = on_way_[now].count(); now = 1 - now) {
+            int now = 0;
+            for (int surface = 1;; ++surface, now = 1 - now) {
+                std::size_t const n = surface < std::min(paths.bounces, kSure) ? all : on_way_[now].count();
+                if (n == 0) break;
                 PathsOnWay const from = paths.next;
                 ColumnView<Hit> const hits = on_way_[now].hits();
                 paths.next = on_way_[1 - now].none();
                 paths.doubtful = none_doubtful();
                 if (by_rays)
-                    launch(S, "exact rays of paths", n, NearestHits{world_.view(), rays, from.queries, hits});
+                    launch(S, "exact rays of paths", n,
+                           NearestHits{world_.view(), rays, from.queries, hits, {from.count.data, 1}});
                 if (n > few)
                     launch(S, "further steps of paths", n,
                            FurtherSteps<by_rays, false>{{paths}, from, hits, rays});
@@ -222,17 +246,47 @@ private:
         Buffer<std::uint32_t, S> count_;
     };
 
+    static constexpr int kSure = 4; ///< surfaces from which most paths go on
     static constexpr std::size_t kFewOnWay = std::size_t(1) << 14;
     /// Bounds memory, and is enough to fill a device.
     static constexpr std::size_t kMostOnWay = std::size_t(1) << 20;
 
     template <class Work>
-    void with_cut_outs(std::uint32_t seed, Work const& work) const
+    void with_cut_outs(Work const& work) const
     {
         if (marked_.size() == 0)
             work(KeepAll{});
         else
-            work(KeepUncut{world_.view(), marked_.view(), seed});
+            work(KeepUncut{world_.view(), marked_.view()});
+    }
+    template <class Grid>
+    std::vector<Buffer<NearestTexel, S>> draw_all(std::span<Grid const> grids,
+                                                  std::vector<std::uint32_t> const& seeds) const
+    {
+        std::vector<Buffer<NearestTexel, S>> maps;
+        with_cut_outs([&](auto const& keep) { maps = draw_nearest<S>(soup_.view(), grids, seeds, keep); });
+        return maps;
+    }
+
+    /// Faces of shadow maps, and whose they are.
+    template <class Grid>
+    struct FacesToDraw {
+        std::vector<Grid> grids;
+        std::vector<std::pair<std::size_t, std::size_t>> of; ///< light point, face
+
+        void add(Grid const& grid, std::size_t light_point, std::size_t face)
+        {
+            grids.push_back(grid);
+            of.emplace_back(light_point, face);
+        }
+    };
+    template <class Grid>
+    void draw_faces(FacesToDraw<Grid> const& faces, std::uint32_t seed)
+    {
+        std::vector<Buffer<NearestTexel, S>> maps =
+            draw_all(std::span<Grid const>(faces.grids), std::vector<std::uint32_t>(faces.grids.size(), seed));
+        for (std::size_t i = 0; i < maps.size(); ++i)
+            maps_[faces.of[i].first][faces.of[i].second] = std::move(maps[i]);
     }
 
     WorldOn<S> world_;
@@ -254,7 +308,7 @@ private:
     OnWay on_way_[2];
     ColumnBuffer<DoubtfulLight, S> doubtful_; ///< empty if no exact rays decide
     Buffer<std::uint32_t, S> doubtful_count_{1};
-    PathKernelCounts counts_;
+    Buffer<PathKernelCounts, S> counts_{1024}; ///< threads that add to one number wait for each other
 };
 
 } // namespace gi

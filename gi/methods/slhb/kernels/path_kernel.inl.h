@@ -248,6 +248,7 @@ GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
 template <bool by_rays, bool last>
 GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
 {
+    if (i >= from.count[0]) return;
     PathKernelCounts local;
     PathOnWay const path = from.paths.load(i);
     typename StepPaths<by_rays>::State s;
