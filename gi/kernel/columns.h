@@ -40,6 +40,7 @@ public:
     }
 
     std::size_t size() const { return count_; }
+    Buffer<std::uint32_t, S>& words() { return words_; } ///< column after column
     ColumnView<T> view() { return {words_.view(), count_}; }
 
 private:

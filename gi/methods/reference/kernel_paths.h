@@ -13,6 +13,7 @@
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <tbb/parallel_for.h>
@@ -21,54 +22,53 @@ namespace gi {
 
 /// Memory of paths on their way.
 template <Space S>
-class PathMemory {
-public:
+struct PathMemory {
     PathMemory() = default;
     /// @param n  number of slots  @param pixels  of the picture
     PathMemory(std::size_t n, std::size_t pixels)
-        : slots_(n),
-          carried_(n),
-          lights_(n),
-          seen_(n),
-          queries_(n),
-          shadows_(n),
-          hits_(n),
-          left_(n),
-          added_(pixels),
-          taken_(1)
+        : slots(n),
+          carried(n),
+          lights(n),
+          seen(n),
+          queries(n),
+          shadows(n),
+          hits(n),
+          left(n),
+          added(pixels),
+          taken_paths(1)
     {
     }
-    std::size_t pixels() const { return added_.size(); }
+    std::size_t pixels() const { return added.size(); }
 
     void lend(PathSlots& to)
     {
-        to.slots = slots_.view();
-        to.carried = carried_.view();
-        to.lights = lights_.view();
-        to.seen = seen_.view();
-        to.queries = queries_.view();
-        to.shadows = shadows_.view();
-        to.hits = hits_.view();
-        to.left = left_.view();
-        to.added = added_.view();
-        to.taken = taken_.view();
+        to.slots = slots.view();
+        to.carried = carried.view();
+        to.lights = lights.view();
+        to.seen = seen.view();
+        to.queries = queries.view();
+        to.shadows = shadows.view();
+        to.hits = hits.view();
+        to.left = left.view();
+        to.added = added.view();
+        to.taken = taken_paths.view();
     }
     void take_none()
     {
-        for (auto const of : {added_.view(), taken_.view()})
+        for (View<std::uint32_t> const of : {added.view(), taken_paths.view()})
             fill_bytes(S, of.data, 0, of.size() * sizeof(std::uint32_t));
     }
-    std::uint32_t taken() const { return download(taken_).front(); }
+    std::uint32_t taken() const { return download(taken_paths).front(); }
 
-private:
-    ColumnBuffer<PathSlot, S> slots_;
-    ColumnBuffer<PathCarry, S> carried_;
-    ColumnBuffer<PathLight, S> lights_;
-    ColumnBuffer<FirstSurface, S> seen_;
-    ColumnBuffer<RayQuery, S> queries_, shadows_;
-    ColumnBuffer<Hit, S> hits_;
-    ColumnBuffer<vec3, S> left_;
-    Buffer<std::uint32_t, S> added_, taken_;
+    // As in PathSlots.
+    ColumnBuffer<PathSlot, S> slots;
+    ColumnBuffer<PathCarry, S> carried;
+    ColumnBuffer<PathLight, S> lights;
+    ColumnBuffer<FirstSurface, S> seen;
+    ColumnBuffer<RayQuery, S> queries, shadows;
+    ColumnBuffer<Hit, S> hits;
+    ColumnBuffer<vec3, S> left;
+    Buffer<std::uint32_t, S> added, taken_paths;
 };
 
 template <Space S>
@@ -127,6 +127,8 @@ public:
         return counts;
     }
 
+    std::function<void(PathMemory<S>&)> after_step; ///< for programs that compare spaces: they may change it
+
 private:
     /// @param most  paths of each pixel that are traced together
     /// @param to     (number of its first path) -> where samples go
@@ -184,7 +186,10 @@ private:
                 launch(S, "rays of paths", 2 * std::size_t(n),
                        RaysOfPaths<false>{world, rays, all.queries, all.shadows, all.hits, all.left});
         };
-        auto const scatter = [&] { launch(S, "scatter paths", n, ScatterPaths<Samples>{{all, to}}); };
+        auto const scatter = [&] {
+            launch(S, "scatter paths", n, ScatterPaths<Samples>{{all, to}});
+            if (after_step) after_step(memory_);
+        };
         memory_.take_none();
         launch(S, "start paths", n, StartPaths{all});
         for (;;) {

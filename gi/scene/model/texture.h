@@ -9,7 +9,7 @@
 
 namespace gi {
 
-struct Rgba8 {
+struct alignas(4) Rgba8 { // so that kernels load it as one word
     std::uint8_t r, g, b, a;
 };
 

@@ -416,6 +416,11 @@ void add_view(CLI::App& app, int& exit_code)
          "--set", a->settings,
          "KEY=VALUE, set before the first frame, e.g. quality=exact or stereo=anaglyph-dubois; repeatable")
         ->take_all();
+    for (char const* const key : {"method", "device"}) // after --set, which replaces what is there
+        c->add_option_function<std::string>(
+            std::string("--") + key,
+            [a, key](std::string const& value) { a->settings.push_back(std::string(key) + "=" + value); },
+            std::string("as --set ") + key + "=...");
     c->add_option("--size", a->size,
                   "window size, pixels (default: 1280x720); with --replay: size of the pictures");
     c->add_option("--fullscreen", a->fullscreen,

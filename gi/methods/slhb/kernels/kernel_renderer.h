@@ -53,6 +53,7 @@ public:
     std::string level_option() const { return traced_.windows.option(); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
     void report_work() const;
+    KernelScene<S>& scene() { return scene_; }
 
 private:
     struct View : TracedView {

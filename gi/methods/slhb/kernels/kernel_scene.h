@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -171,6 +172,15 @@ public:
         return sum;
     }
 
+    /// What a step of all paths has left, for programs that compare spaces: they may change it.
+    struct AfterStep {
+        ColumnBuffer<PathOnWay, S>& paths; ///< that go on
+        ColumnBuffer<RayQuery, S>& queries;
+        Buffer<std::uint32_t, S>& count; ///< [0]: of paths
+        Buffer<PathSample, S>& samples;
+    };
+    std::function<void(AfterStep const&)> after_step; ///< called by trace()
+
 private:
     void forget_counts() { fill_bytes(S, counts_.view().data, 0, counts_.size() * sizeof(PathKernelCounts)); }
 
@@ -187,6 +197,7 @@ private:
             paths.doubtful = none_doubtful();
             launch(S, "first steps of paths", all, FirstSteps<by_rays>{{paths}});
             add_doubtful_light(all, rays, paths);
+            if (after_step) after_step(on_way_[0].left(samples_));
             int now = 0;
             for (int surface = 1;; ++surface, now = 1 - now) {
                 std::size_t const n = surface < std::min(paths.bounces, kSure) ? all : on_way_[now].count();
@@ -204,6 +215,7 @@ private:
                 else
                     launch(S, "last steps of paths", n, FurtherSteps<by_rays, true>{{paths}, from, hits, rays});
                 if (n > few) add_doubtful_light(n, rays, paths); // the last steps add it themselves
+                if (after_step) after_step(on_way_[1 - now].left(samples_));
             }
         }
     }
@@ -233,6 +245,7 @@ private:
         bool has_rays() const { return queries_.size() > 0; }
         std::size_t count() const { return download(count_).front(); }
         ColumnView<Hit> hits() { return hits_.view(); }
+        AfterStep left(Buffer<PathSample, S>& samples) { return {paths_, queries_, count_, samples}; }
         PathsOnWay none()
         {
             fill_bytes(S, count_.view().data, 0, sizeof(std::uint32_t));

@@ -1,0 +1,392 @@
+// The kernels of paths, step by step, by the host and by the device: both begin each step with the same state of all
+// paths, and what the step leaves is compared path by path. Pictures hide what few paths do; this does not.
+// Integers (triangles, numbers of scatterings, stages) must be equal; of other numbers is counted by how many units in
+// the last place (ulp) they differ, as a device fuses products and sums, and the ten that differ most are printed.
+//   check_kernels [--size N] [--passes N] [SCENE...]
+//     default: 256 x 256 paths a step, 2 passes; cornell, mirror, ring, atrium
+// Ends with 1 if more than one of 10,000 items have another integer or differ by more than 2^14 ulp (0.1 %).
+
+#include "gi/core/report.h"
+#include "gi/methods/reference/kernel_paths.h"
+#include "gi/methods/slhb/kernels/kernel_renderer.h"
+#include "gi/methods/paths/choose.h"
+#include "gi/scene/generate/generate.h"
+#include "gi/scene/load/load.h"
+
+#include <algorithm>
+#include <bit>
+#include <fmt/format.h>
+#include <map>
+#include <unordered_map>
+
+namespace gi::bench {
+namespace {
+
+using Words = std::vector<std::uint32_t>;
+
+/// The words of a struct that are no floating-point numbers.
+template <class T>
+std::vector<std::size_t> integers();
+template <>
+std::vector<std::size_t> integers<PathOnWay>()
+{
+    return {4, 5, 6, 7};
+}
+template <>
+std::vector<std::size_t> integers<PathSample>()
+{
+    return {19};
+}
+template <>
+std::vector<std::size_t> integers<PathSlot>()
+{
+    return {0, 1, 2, 3, 4, 5};
+}
+template <>
+std::vector<std::size_t> integers<PathCarry>()
+{
+    return {4, 5, 6, 7, 8, 9, 10, 11};
+}
+template <>
+std::vector<std::size_t> integers<PathLight>()
+{
+    return {12};
+}
+template <>
+std::vector<std::size_t> integers<FirstSurface>()
+{
+    return {10, 11};
+}
+template <>
+std::vector<std::size_t> integers<RayQuery>()
+{
+    return {7, 9};
+}
+
+/// Items as one after the other, of columns or of an array.
+template <class T>
+struct Items {
+    Words words;
+    std::size_t count = 0;
+
+    std::uint32_t word(std::size_t item, std::size_t k) const { return words[k * count + item]; }
+    T at(std::size_t item) const
+    {
+        typename ColumnView<T>::Words all;
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] = word(item, k);
+        return __builtin_bit_cast(T, all);
+    }
+};
+
+template <class T, Space S>
+Items<T> taken_from(ColumnBuffer<T, S>& columns)
+{
+    return {download(columns.words()), columns.size()};
+}
+template <class T, Space S>
+void put(Items<T> const& items, ColumnBuffer<T, S>& columns)
+{
+    copy_bytes(S, columns.words().view().data, Space::host, items.words.data(),
+               items.words.size() * sizeof(std::uint32_t));
+}
+template <class T, Space S>
+void put(std::vector<T> const& values, Buffer<T, S>& there)
+{
+    copy_bytes(S, there.view().data, Space::host, values.data(), values.size() * sizeof(T));
+}
+
+/// Numbers as integers that sort in the same order.
+std::int64_t place(float v)
+{
+    auto const bits = std::bit_cast<std::int32_t>(v + 0.0f);
+    return bits < 0 ? std::int64_t(std::int32_t(0x80000000u)) - bits : bits;
+}
+
+/// What was found different of one kind of items after one kind of steps.
+class Difference {
+public:
+    void item(std::string const& where, std::span<std::uint32_t const> host, std::span<std::uint32_t const> device,
+              std::vector<std::size_t> const& integers)
+    {
+        ++items_;
+        std::int64_t most = 0;
+        bool other = false;
+        for (std::size_t k = 0; k < host.size(); ++k) {
+            if (host[k] == device[k]) continue;
+            auto const h = std::bit_cast<float>(host[k]), d = std::bit_cast<float>(device[k]);
+            if (std::ranges::find(integers, k) != integers.end()) {
+                other = true;
+                note(std::int64_t(1) << 40, fmt::format("{}, word {}: {:#x}, {:#x}", where, k, host[k], device[k]));
+            } else if (!(std::isnan(h) && std::isnan(d))) {
+                std::int64_t const ulp = std::isnan(h) || std::isnan(d) ? std::int64_t(1) << 32
+                                         : std::abs(h - d) < 1e-30f     ? 0
+                                                                        : std::abs(place(h) - place(d));
+                most = std::max(most, ulp);
+                if (ulp > kFew) note(ulp, fmt::format("{}, word {}: {:.9g}, {:.9g}", where, k, h, d));
+            }
+        }
+        others_ += other;
+        beyond_few_ += most > kFew;
+        far_ += !other && most > kFar;
+    }
+    void missing(std::string const& where)
+    {
+        ++items_;
+        ++others_;
+        note(std::int64_t(1) << 41, where + ": only one of both has it");
+    }
+    /// @return whether it is within what rounding explains
+    bool print(std::string const& name) const
+    {
+        bool const well = double(others_ + far_) <= 1e-4 * double(items_);
+        fmt::print("  {:<34} {:>9} items, {:>7} with other integers, {:>7} beyond {} ulp, {:>7} beyond {} ulp{}\n", name,
+                   items_, others_, beyond_few_, kFew, far_, kFar, well ? "" : "  FAILED");
+        if (!well)
+            for (auto it = worst_.rbegin(); it != worst_.rend(); ++it) fmt::print("      {}\n", it->second);
+        return well;
+    }
+
+private:
+    static constexpr std::int64_t kFew = 4, kFar = 1 << 14;
+
+    void note(std::int64_t size, std::string const& what)
+    {
+        worst_.emplace(size, what);
+        if (worst_.size() > 10) worst_.erase(worst_.begin());
+    }
+
+    std::uint64_t items_ = 0, others_ = 0, beyond_few_ = 0, far_ = 0;
+    std::multimap<std::int64_t, std::string> worst_;
+};
+
+class Differences {
+public:
+    explicit Differences(std::string scene) : scene_(std::move(scene)) {}
+
+    template <class T>
+    void compare(std::string const& name, std::string const& where, T const& host, T const& device)
+    {
+        using W = typename ColumnView<T>::Words;
+        W h = __builtin_bit_cast(W, host), d = __builtin_bit_cast(W, device);
+        if constexpr (std::is_same_v<T, PathSample>) h[19] &= 0xffffffu, d[19] &= 0xffffffu; // then padding
+        all_[name].item(scene_ + ", " + where, h, d, integers<T>());
+    }
+    void missing(std::string const& name, std::string const& where) { all_[name].missing(scene_ + ", " + where); }
+    bool print() const
+    {
+        bool well = true;
+        fmt::print("{}:\n", scene_);
+        for (auto const& [name, difference] : all_) well &= difference.print(name);
+        return well;
+    }
+
+private:
+    std::string scene_;
+    std::map<std::string, Difference> all_;
+};
+
+/// What a step of slhb leaves.
+struct StepOfSlhb {
+    Items<PathOnWay> paths;
+    Items<RayQuery> queries;
+    std::uint32_t count = 0;
+    std::vector<PathSample> samples;
+};
+
+template <Space S>
+StepOfSlhb step_of(typename KernelScene<S>::AfterStep const& now)
+{
+    return {taken_from(now.paths), taken_from(now.queries), download(now.count).front(), download(now.samples)};
+}
+
+void compare(StepOfSlhb const& host, StepOfSlhb const& device, std::size_t number, Differences& to)
+{
+    std::string const step = number == 0 ? "first step" : "further steps";
+    for (std::size_t p = 0; p < host.samples.size(); ++p)
+        to.compare("slhb " + step + ", light", fmt::format("step {}, pixel {}", number, p), host.samples[p],
+                   device.samples[p]);
+    std::unordered_map<std::uint32_t, std::size_t> of_pixel;
+    for (std::size_t k = 0; k < device.count; ++k) of_pixel[device.paths.at(k).pixel] = k;
+    for (std::size_t k = 0; k < host.count; ++k) {
+        PathOnWay const path = host.paths.at(k);
+        std::string const where = fmt::format("step {}, pixel {}", number, path.pixel);
+        auto const found = of_pixel.find(path.pixel);
+        if (found == of_pixel.end()) {
+            to.missing("slhb " + step + ", paths", where);
+            continue;
+        }
+        to.compare("slhb " + step + ", paths", where, path, device.paths.at(found->second));
+        if (host.queries.count > 0)
+            to.compare("slhb " + step + ", rays", where, host.queries.at(k), device.queries.at(found->second));
+        of_pixel.erase(found);
+    }
+    for (auto const& [pixel, k] : of_pixel)
+        to.missing("slhb " + step + ", paths", fmt::format("step {}, pixel {}", number, pixel));
+}
+
+template <Space S>
+void trace_slhb(World const& world, RenderSettings const& settings, Camera const& camera, int passes,
+                std::function<void(typename KernelScene<S>::AfterStep const&)> const& after)
+{
+    Report report;
+    FrameView const eye{camera, settings.width, settings.height};
+    KernelRenderer<S> renderer(world, {&eye, 1}, settings, make_soup(world), world.triangles.size(), report);
+    renderer.scene().after_step = after;
+    Accumulator sums(settings.width, settings.height);
+    for (int k = 0; k < passes; ++k) renderer.pass(std::uint32_t(k), {&sums, 1});
+}
+
+void check_slhb(World const& world, RenderSettings const& asked, int passes, Differences& to)
+{
+    Camera const& camera = world.cameras.front();
+    RenderSettings settings = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, make_soup(world));
+    KernelRenderer<Space::host>::limit(settings);
+    settings.of<SlhbSettings>().confirm = Confirming::on;
+    std::vector<StepOfSlhb> steps;
+    trace_slhb<Space::host>(world, settings, camera, passes,
+                            [&](auto const& now) { steps.push_back(step_of<Space::host>(now)); });
+    std::size_t number = 0;
+    trace_slhb<Space::device>(world, settings, camera, passes, [&](auto const& now) {
+        StepOfSlhb const& host = steps.at(number);
+        compare(host, step_of<Space::device>(now), number, to);
+        put(host.paths, now.paths); // so that both take the next step from the same state
+        if (host.queries.count > 0) put(host.queries, now.queries);
+        put(std::vector<std::uint32_t>{host.count}, now.count);
+        put(host.samples, now.samples);
+        steps[number++] = {};
+    });
+}
+
+/// What a step of the reference leaves.
+struct StepOfReference {
+    Items<PathSlot> slots;
+    Items<PathCarry> carried;
+    Items<PathLight> lights;
+    Items<FirstSurface> seen;
+    Items<RayQuery> queries, shadows;
+    std::vector<std::uint32_t> added, taken;
+};
+
+template <Space S>
+StepOfReference step_of(PathMemory<S>& m)
+{
+    return {taken_from(m.slots),   taken_from(m.carried), taken_from(m.lights), taken_from(m.seen),
+            taken_from(m.queries), taken_from(m.shadows), download(m.added),    download(m.taken_paths)};
+}
+
+void compare(StepOfReference const& host, StepOfReference const& device, std::size_t number, Differences& to)
+{
+    auto const key = [](PathSlot const& s) { return std::uint64_t(s.number) << 32 | s.pixel; };
+    std::unordered_map<std::uint64_t, std::size_t> of_path;
+    for (std::size_t k = 0; k < device.slots.count; ++k)
+        if (PathSlot const s = device.slots.at(k); s.stage != PathStage::idle) of_path[key(s)] = k;
+    for (std::size_t k = 0; k < host.slots.count; ++k) {
+        PathSlot h = host.slots.at(k);
+        if (h.stage == PathStage::idle) continue;
+        std::string const where = fmt::format("step {}, pixel {}, path {}", number, h.pixel, h.number);
+        auto const found = of_path.find(key(h));
+        if (found == of_path.end()) {
+            to.missing("reference, paths", where);
+            continue;
+        }
+        std::size_t const j = found->second;
+        PathSlot d = device.slots.at(j);
+        h.nearest_rays = h.shadow_rays = d.nearest_rays = d.shadow_rays = 0; // of all paths that the slot had
+        for (PathSlot* const s : {&h, &d}) // whether the one before was added sooner is a matter of timing
+            if (s->stage == PathStage::may_add) s->stage = PathStage::ended;
+        to.compare("reference, paths", where, h, d);
+        to.compare("reference, light", where, host.lights.at(k), device.lights.at(j));
+        if (h.vertex > 0) to.compare("reference, first surfaces", where, host.seen.at(k), device.seen.at(j));
+        if (host.shadows.at(k).reach > 0 || device.shadows.at(j).reach > 0)
+            to.compare("reference, shadow rays", where, host.shadows.at(k), device.shadows.at(j));
+        if (h.stage != PathStage::goes_on) continue;
+        to.compare("reference, states", where, host.carried.at(k), device.carried.at(j));
+        to.compare("reference, rays", where, host.queries.at(k), device.queries.at(j));
+    }
+}
+
+template <Space S>
+void trace_reference(World const& world, RenderSettings const& settings, Camera const& camera, int passes,
+                     std::function<void(PathMemory<S>&)> const& after)
+{
+    Report report;
+    KernelPaths<S> paths(world, settings, world.triangles.size(), report);
+    PathSteps const steps{paths.prepare(), camera_rays(camera, settings.width, settings.height, world.origin),
+                          settings.bounces, settings.seed, settings.filter, settings.width};
+    paths.after_step = after;
+    Accumulator sums(settings.width, settings.height);
+    PassStop const never(nullptr);
+    TiledPass pass(sums, std::uint32_t(passes), never);
+    paths.add(steps, pass, 0, {}, sums);
+}
+
+void check_reference(World const& world, RenderSettings const& settings, int passes, Differences& to)
+{
+    Camera const& camera = world.cameras.front();
+    std::vector<StepOfReference> steps;
+    trace_reference<Space::host>(world, settings, camera, passes,
+                                 [&](auto& now) { steps.push_back(step_of(now)); });
+    std::size_t number = 0;
+    trace_reference<Space::device>(world, settings, camera, passes, [&](auto& now) {
+        StepOfReference const& host = steps.at(number);
+        compare(host, step_of(now), number, to);
+        put(host.slots, now.slots);
+        put(host.carried, now.carried);
+        put(host.lights, now.lights);
+        put(host.seen, now.seen);
+        put(host.queries, now.queries);
+        put(host.shadows, now.shadows);
+        put(host.added, now.added);
+        put(host.taken, now.taken_paths);
+        steps[number++] = {};
+    });
+}
+
+Scene scene_of(std::string const& name, Report& report)
+{
+    if (name == "cornell") return generate_cornell();
+    if (name == "mirror") return generate_mirror();
+    if (name == "ring") return generate_ring();
+    if (name == "atrium") return generate_atrium({});
+    return load_scene(name, report);
+}
+
+bool check(std::string const& name, int size, int passes)
+{
+    Report report;
+    World const world = build_world(std::make_shared<Scene const>(scene_of(name, report)), std::nullopt, report);
+    Differences differences(name);
+    RenderSettings settings;
+    settings.width = settings.height = size;
+    settings.bounces = 8;
+    check_slhb(world, settings, passes, differences);
+    check_reference(world, settings, passes, differences);
+    return differences.print();
+}
+
+} // namespace
+} // namespace gi::bench
+
+int main(int argc, char** argv)
+try {
+    int size = 256, passes = 2;
+    std::vector<std::string> scenes;
+    for (int i = 1; i < argc; ++i) {
+        std::string const a = argv[i];
+        if (a == "--size" && i + 1 < argc)
+            size = std::stoi(argv[++i]);
+        else if (a == "--passes" && i + 1 < argc)
+            passes = std::stoi(argv[++i]);
+        else
+            scenes.push_back(a);
+    }
+    if (scenes.empty()) scenes = {"cornell", "mirror", "ring", "atrium"};
+    gi::check_device(gi::Space::device);
+    if (gi::is_device_simulated()) fmt::print("the device is simulated: this checks the checks alone\n");
+    bool well = true;
+    for (std::string const& scene : scenes) well &= gi::bench::check(scene, size, passes);
+    return well ? 0 : 1;
+} catch (std::exception const& e) {
+    fmt::print(stderr, "check_kernels: {}\n", e.what());
+    return 2;
+}
