@@ -11,21 +11,6 @@ namespace gi {
 /// A query that nothing answers.
 GI_FN inline RayQuery no_query() { return {.ray = {}, .reach = 0}; }
 
-struct NearestHits {
-    WorldView world;
-    KernelRays rays;
-    ColumnView<RayQuery> queries;
-    ColumnView<Hit> hits;
-    View<std::uint32_t const> count; ///< [0]: of queries
-
-    GI_FN void operator()(std::size_t i) const
-    {
-        if (i >= count[0]) return;
-        RayQuery const q = queries.load(i);
-        if (q.reach > 0) hits.store(i, rays.nearest(world, q));
-    }
-};
-
 /// The nearest hits of as many queries, then what is left of the light along as many shadow rays: in one launch, so
 /// that a device is not left idle between them.
 template <bool panes>

@@ -8,6 +8,5 @@ namespace gi {
 template void launch_device(char const*, std::size_t, AddSamples const&);
 template void launch_device(char const*, std::size_t, RaysOfPaths<false> const&);
 template void launch_device(char const*, std::size_t, RaysOfPaths<true> const&);
-template void launch_device(char const*, std::size_t, NearestHits const&);
 
 } // namespace gi

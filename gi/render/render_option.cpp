@@ -55,7 +55,7 @@ RenderOptionTable const& common_options()
         RenderOption device = common(
             "device", {"cpu", "cuda"},
             "of methods that have kernels: cpu; or cuda: everything on the GPU, also --reuse and --shutter", &S::space);
-        device.methods = {"auto", "reference", "slhb", "slhb_0_1"};
+        device.methods = {"auto", "paths", "reference", "slhb", "slhb_0_1"};
         table.push_back(std::move(device));
         return table;
     }();

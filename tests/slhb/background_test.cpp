@@ -1,7 +1,7 @@
 // What the camera sees past all surfaces, in every method: the map, a colour, or nothing.
 
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "tests/slhb/slhb_render.h"
 
 namespace gi::test {

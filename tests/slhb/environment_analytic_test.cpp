@@ -2,8 +2,8 @@
 // turned scenes, and a sun that must neither vanish nor leave single bright pixels.
 
 #include "gi/hit_buffers/settings.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/metrics/ztest.h"
 #include "gi/scene/model/sky.h"
 #include "tests/slhb/slhb_render.h"

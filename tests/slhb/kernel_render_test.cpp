@@ -4,7 +4,7 @@
 #include "gi/core/error.h"
 #include "gi/hit_buffers/settings.h"
 #include "gi/light_paths/settings.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
 

@@ -1,8 +1,8 @@
 // Shares of the paths of a picture, rendered apart and added, are the picture that one process renders.
 
 #include "gi/hit_buffers/settings.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/render/accumulator.h"
 #include "tests/slhb/slhb_render.h"
 

@@ -4,8 +4,8 @@
 #include "gi/hit_buffers/windows.h"
 
 #include "gi/hit_buffers/hit_buffer.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/reference/reference.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "tests/raster/plain_raster.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/closed_mesh.h"

@@ -37,6 +37,12 @@ inline constexpr PathAlgorithm kSlhb{SurfacesBy::look_ups, ShadowsBy::maps, fals
 inline constexpr PathAlgorithm kPathsLayeredLens{.layered_lens = true};
 inline constexpr PathAlgorithm kScreenLhb{SurfacesBy::screen, ShadowsBy::rays, false};
 
+/// How first surfaces are found:
+enum class FirstSurfaces : std::uint8_t {
+    by_raster, ///< by a G-buffer per pass; needed for motion vectors and partner views
+    by_rays,   ///< by an exact ray per path, each through its own subpixel position
+};
+
 /// Seconds of the budget that passed before the call, as of choosing the method.
 struct SpentBeforehand {
     double seconds = 0;

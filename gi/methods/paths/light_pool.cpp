@@ -7,6 +7,15 @@
 #include <tbb/parallel_for.h>
 
 namespace gi {
+
+std::uint32_t LightPool::groups_for(std::size_t pixels, World const& world)
+{
+    constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
+    std::size_t const for_pixels = std::clamp(pixels / kPixelsOfGroup, kLeast, kUsual),
+                      for_lights = 2 * world.light_select.entries.size() / kCandidates;
+    return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
+}
+
 void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t groups, std::uint64_t seed,
                      std::uint32_t pass)
 {
@@ -26,7 +35,7 @@ void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t 
         p.choice = order.choose((part * groups + g + double(u.x)) / count);
         p.u = {u.y, u.z};
         p.light = distant_light(world, p.choice, p.u);
-        Group& to = groups_[g];
+        LightGroup& to = groups_[g];
         vec3 at = p.light.direction, facing{0};
         float near = 0, power = p.light.pdf > 0 ? luminance(p.light.radiance) / p.light.pdf : 0, back = 0;
         if (p.light.pdf > 0 || !(p.choice.probability > 0)) {
@@ -68,22 +77,6 @@ void LightPool::fill(LightOrder const& order, World const& world, std::uint32_t 
     });
 }
 
-void LightPool::weigh(Group const& from, vec3 position, vec3 normal, float* weight)
-{
-    for (std::uint32_t k = 0; k < kCandidates; ++k) {
-        float const near = from.near[k];
-        float const x = from.x[k] - near * position.x, y = from.y[k] - near * position.y,
-                    z = from.z[k] - near * position.z;
-        float const squared = x * x + y * y + z * z, inverse = 1 / std::sqrt(squared + 1e-30f);
-        float const cosine = (x * normal.x + y * normal.y + z * normal.z) * inverse;
-        float const front = -(x * from.facing_x[k] + y * from.facing_y[k] + z * from.facing_z[k]) * inverse;
-        float const light_point = from.everywhere[k] + std::max(front, -front * from.back[k]);
-        float const w = from.power[k] * std::max(cosine, 0.0f) * std::max(light_point, 0.0f) *
-                        (near * inverse * inverse + (1 - near));
-        weight[k] = w < 1e30f ? w : 0;
-    }
-}
-
 ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) const
 {
     alignas(32) std::array<float, kMostRounds * kCandidates> weight;
@@ -91,7 +84,8 @@ ChosenLight LightPool::choose(vec3 position, vec3 normal, float u, float pick) c
     std::size_t const groups = groups_.size();
     for (std::uint32_t r = 0; r < rounds_; ++r) {
         group[r] = (std::min(std::size_t(u * float(groups)), groups - 1) + r * groups / rounds_) % groups;
-        weigh(groups_[group[r]], position, normal, &weight[r * kCandidates]);
+        for (std::uint32_t k = 0; k < kCandidates; ++k)
+            weight[r * kCandidates + k] = groups_[group[r]].weight(k, position, normal);
     }
     std::uint32_t const count = rounds_ * kCandidates;
     float sum = 0;

@@ -1,6 +1,10 @@
 #include "gi/methods/paths/paths.h"
 
+#include "gi/kernel/device.h"
+#include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/frames_of.h"
+#include "gi/methods/paths/kernels/kernel_frames.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/paths/look_up_trust.h"
 #include "gi/render/fingerprint.h"
 
@@ -61,12 +65,21 @@ std::unique_ptr<FrameRenderer> start_frames_by(MovingWorld const& world, Camera 
 RenderResult render_paths(World const& world, Camera const& camera, RenderSettings const& settings,
                           StopRequest const& stop, RenderProgress const& progress, Report& report)
 {
+    if (settings.space == Space::device) {
+        check_device(Space::device);
+        lose_lamp_caustics(world, report);
+        return render_paths_by_kernels(Space::device, world, camera, settings, stop, progress, report);
+    }
     return render_by("paths", world, camera, with(PathAlgorithm{}, settings), stop, progress, report);
 }
 
 std::unique_ptr<FrameRenderer> start_path_frames(MovingWorld const& world, Camera const& camera,
                                                  RenderSettings const& settings, Report& report)
 {
+    if (settings.space == Space::device) {
+        check_device(Space::device);
+        return start_path_kernel_frames(Space::device, world, camera, settings, report);
+    }
     return start_frames_by(world, camera, with(PathAlgorithm{}, settings), report);
 }
 

@@ -12,16 +12,6 @@
 namespace gi {
 namespace {
 
-/// Number of groups of light samples per pass: each is shared by few paths; with few lights all groups fit the
-/// second-level cache; with many lights each has about two samples.
-std::uint32_t light_groups(std::size_t pixels, World const& world)
-{
-    constexpr std::size_t kPixelsOfGroup = 32, kLeast = 64, kUsual = 256, kMost = 4096;
-    std::size_t const for_pixels = std::clamp(pixels / kPixelsOfGroup, kLeast, kUsual),
-                      for_lights = 2 * world.light_select.entries.size() / LightPool::kCandidates;
-    return std::uint32_t(std::min(std::max(for_pixels, for_lights), kMost));
-}
-
 /// Choosing among axes and light points only needs their grids.
 std::uint32_t texels(bool unused, int n) { return std::uint32_t(unused ? 2 : n); }
 
@@ -268,8 +258,9 @@ PathsTracer::Pass PathsRenderer::tracing(std::uint32_t index, bool cached, PassS
                                        : kNoPrimitive;
     if (!shadow_maps_) {
         light_order_.update(world_);
-        lights_.fill(light_order_, world_, light_groups(views_.back().first + views_.back().pixels(), world_),
-                     settings_.seed, index);
+        lights_.fill(light_order_, world_,
+                     LightPool::groups_for(views_.back().first + views_.back().pixels(), world_), settings_.seed,
+                     index);
     }
     sky_.clear();
     if (walks && !slhb_.exact.directions) sky_ = sky_along(axes_.set(), world_);

@@ -11,12 +11,6 @@
 
 namespace gi {
 
-/// How first surfaces are found:
-enum class FirstSurfaces : std::uint8_t {
-    by_raster, ///< by a G-buffer per pass; needed for motion vectors and partner views
-    by_rays,   ///< by an exact ray per path, each through its own subpixel position
-};
-
 class PathsRenderer {
 public:
     /// Builds the lasting structures; throws Interrupted if `stop` is requested meanwhile. `world` and `report`

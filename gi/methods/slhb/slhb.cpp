@@ -2,9 +2,10 @@
 
 #include "gi/kernel/device.h"
 #include "gi/light_paths/lamp_caustics.h"
-#include "gi/methods/paths/frames_of.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
-#include "gi/methods/slhb/kernels/kernel_renderer.h"
+#include "gi/methods/paths/choose.h"
+#include "gi/methods/paths/kernels/kernel_frames.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
+#include "gi/methods/paths/kernels/kernel_renderer.h"
 
 namespace gi {
 
@@ -59,15 +60,6 @@ ExposurePlan look_up_exposure(std::string_view method, PathAlgorithm by, World c
 bool slhb_updates_axes(RenderSettings const& settings)
 {
     return settings.of<SlhbSettings>().schedule == Schedule::automatic;
-}
-
-std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
-                                                   RenderSettings const& settings, Report& report)
-{
-    RenderSettings const s = with(kSlhb, settings);
-    if (space == Space::host)
-        return std::make_unique<PathsFrames<KernelRenderer<Space::host>>>(world, camera, s, report);
-    return std::make_unique<PathsFrames<KernelRenderer<Space::device>>>(world, camera, s, report);
 }
 
 } // namespace gi

@@ -47,9 +47,4 @@ struct Mixed {
 using SlhbShadowRays = Mixed<SurfacesBy::look_ups>;
 using PathsShadowMaps = Mixed<SurfacesBy::rays>;
 
-/// The frames of slhb by kernels in a space, see kernel_renderer.h: on the device this is `--device cuda`; on the host
-/// it lets tests compare the kernels with the CPU implementation. Throws InputError on features that kernels lack.
-std::unique_ptr<FrameRenderer> start_kernel_frames(Space space, MovingWorld const& world, Camera const& camera,
-                                                   RenderSettings const& settings, Report& report);
-
 } // namespace gi

@@ -4,9 +4,10 @@
 #include "gi/kernel/device.h"
 #include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/automatic/automatic.h"
+#include "gi/methods/paths/kernels/kernel_frames.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/paths/lobes.h"
 #include "gi/methods/paths/paths.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/methods/slhb/slhb.h"
 
 namespace gi {

@@ -7,9 +7,9 @@
 // Ends with 1 if more than one of 10,000 items have another integer or differ by more than 2^14 ulp (0.1 %).
 
 #include "gi/core/report.h"
-#include "gi/methods/reference/kernel_paths.h"
-#include "gi/methods/slhb/kernels/kernel_renderer.h"
 #include "gi/methods/paths/choose.h"
+#include "gi/methods/paths/kernels/kernel_renderer.h"
+#include "gi/methods/reference/kernel_paths.h"
 #include "gi/scene/generate/generate.h"
 #include "gi/scene/load/load.h"
 
@@ -31,6 +31,11 @@ template <>
 std::vector<std::size_t> integers<PathOnWay>()
 {
     return {4, 5, 6, 7};
+}
+template <>
+std::vector<std::size_t> integers<WaitingLight>()
+{
+    return {7, 9, 13, 14};
 }
 template <>
 std::vector<std::size_t> integers<PathSample>()
@@ -185,73 +190,93 @@ private:
     std::map<std::string, Difference> all_;
 };
 
-/// What a step of slhb leaves.
-struct StepOfSlhb {
+/// What a step of paths or slhb leaves.
+struct StepOfPaths {
     Items<PathOnWay> paths;
     Items<RayQuery> queries;
     std::uint32_t count = 0;
+    Items<WaitingLight> waiting;
+    std::uint32_t waits = 0;
     std::vector<PathSample> samples;
 };
 
 template <Space S>
-StepOfSlhb step_of(typename KernelScene<S>::AfterStep const& now)
+StepOfPaths step_of(typename KernelScene<S>::AfterStep const& now)
 {
-    return {taken_from(now.paths), taken_from(now.queries), download(now.count).front(), download(now.samples)};
+    return {taken_from(now.paths),   taken_from(now.queries),     download(now.count).front(),
+            taken_from(now.waiting), download(now.waits).front(), download(now.samples)};
 }
 
-void compare(StepOfSlhb const& host, StepOfSlhb const& device, std::size_t number, Differences& to)
+/// Compares items of pixels, in whatever order they are. @param rest  (host's item, device's) -> compares more
+template <class T, class Rest>
+void compare_items(std::string const& name, std::size_t step, Items<T> const& host, std::size_t of_host,
+                   Items<T> const& device, std::size_t of_device, Differences& to, Rest const& rest)
 {
-    std::string const step = number == 0 ? "first step" : "further steps";
-    for (std::size_t p = 0; p < host.samples.size(); ++p)
-        to.compare("slhb " + step + ", light", fmt::format("step {}, pixel {}", number, p), host.samples[p],
-                   device.samples[p]);
     std::unordered_map<std::uint32_t, std::size_t> of_pixel;
-    for (std::size_t k = 0; k < device.count; ++k) of_pixel[device.paths.at(k).pixel] = k;
-    for (std::size_t k = 0; k < host.count; ++k) {
-        PathOnWay const path = host.paths.at(k);
-        std::string const where = fmt::format("step {}, pixel {}", number, path.pixel);
-        auto const found = of_pixel.find(path.pixel);
+    for (std::size_t k = 0; k < of_device; ++k) of_pixel[device.at(k).pixel] = k;
+    for (std::size_t k = 0; k < of_host; ++k) {
+        T const item = host.at(k);
+        std::string const where = fmt::format("step {}, pixel {}", step, item.pixel);
+        auto const found = of_pixel.find(item.pixel);
         if (found == of_pixel.end()) {
-            to.missing("slhb " + step + ", paths", where);
+            to.missing(name, where);
             continue;
         }
-        to.compare("slhb " + step + ", paths", where, path, device.paths.at(found->second));
-        if (host.queries.count > 0)
-            to.compare("slhb " + step + ", rays", where, host.queries.at(k), device.queries.at(found->second));
+        to.compare(name, where, item, device.at(found->second));
+        rest(where, k, found->second);
         of_pixel.erase(found);
     }
-    for (auto const& [pixel, k] : of_pixel)
-        to.missing("slhb " + step + ", paths", fmt::format("step {}, pixel {}", number, pixel));
+    for (auto const& [pixel, k] : of_pixel) to.missing(name, fmt::format("step {}, pixel {}", step, pixel));
+}
+
+void compare(std::string const& method, StepOfPaths const& host, StepOfPaths const& device, std::size_t number,
+             Differences& to)
+{
+    for (std::size_t p = 0; p < host.samples.size() && number > 0; ++p) // rays of the camera leave none
+        to.compare(method + ", light", fmt::format("step {}, pixel {}", number, p), host.samples[p],
+                   device.samples[p]);
+    compare_items(method + ", paths", number, host.paths, host.count, device.paths, device.count, to,
+                  [&](std::string const& where, std::size_t k, std::size_t j) {
+                      if (host.queries.count > 0)
+                          to.compare(method + ", rays", where, host.queries.at(k), device.queries.at(j));
+                  });
+    compare_items(method + ", light of samples", number, host.waiting, host.waits, device.waiting, device.waits,
+                  to, [](std::string const&, std::size_t, std::size_t) {});
 }
 
 template <Space S>
-void trace_slhb(World const& world, RenderSettings const& settings, Camera const& camera, int passes,
-                std::function<void(typename KernelScene<S>::AfterStep const&)> const& after)
+void trace_paths(World const& world, RenderSettings const& settings, Camera const& camera, int passes,
+                 std::function<void(typename KernelScene<S>::AfterStep const&)> const& after)
 {
     Report report;
     FrameView const eye{camera, settings.width, settings.height};
-    KernelRenderer<S> renderer(world, {&eye, 1}, settings, make_soup(world), world.triangles.size(), report);
+    bool const free = settings.of<PathAlgorithm>().surfaces == SurfacesBy::rays;
+    KernelRenderer<S> renderer(world, {&eye, 1}, settings, make_soup(world), world.triangles.size(), report,
+                               free ? FirstSurfaces::by_rays : FirstSurfaces::by_raster);
     renderer.scene().after_step = after;
     Accumulator sums(settings.width, settings.height);
     for (int k = 0; k < passes; ++k) renderer.pass(std::uint32_t(k), {&sums, 1});
 }
 
-void check_slhb(World const& world, RenderSettings const& asked, int passes, Differences& to)
+void check_paths(std::string const& method, PathAlgorithm by, World const& world, RenderSettings const& asked,
+                 int passes, Differences& to)
 {
     Camera const& camera = world.cameras.front();
-    RenderSettings settings = choose_settings(with({SurfacesBy::look_ups, ShadowsBy::maps}, asked), world, make_soup(world));
+    RenderSettings settings = choose_settings(with(by, asked), world, make_soup(world));
     KernelRenderer<Space::host>::limit(settings);
     settings.of<SlhbSettings>().confirm = Confirming::on;
-    std::vector<StepOfSlhb> steps;
-    trace_slhb<Space::host>(world, settings, camera, passes,
-                            [&](auto const& now) { steps.push_back(step_of<Space::host>(now)); });
+    std::vector<StepOfPaths> steps;
+    trace_paths<Space::host>(world, settings, camera, passes,
+                             [&](auto const& now) { steps.push_back(step_of<Space::host>(now)); });
     std::size_t number = 0;
-    trace_slhb<Space::device>(world, settings, camera, passes, [&](auto const& now) {
-        StepOfSlhb const& host = steps.at(number);
-        compare(host, step_of<Space::device>(now), number, to);
+    trace_paths<Space::device>(world, settings, camera, passes, [&](auto const& now) {
+        StepOfPaths const& host = steps.at(number);
+        compare(method, host, step_of<Space::device>(now), number, to);
         put(host.paths, now.paths); // so that both take the next step from the same state
         if (host.queries.count > 0) put(host.queries, now.queries);
         put(std::vector<std::uint32_t>{host.count}, now.count);
+        put(host.waiting, now.waiting);
+        put(std::vector<std::uint32_t>{host.waits}, now.waits);
         put(host.samples, now.samples);
         steps[number++] = {};
     });
@@ -359,7 +384,8 @@ bool check(std::string const& name, int size, int passes)
     RenderSettings settings;
     settings.width = settings.height = size;
     settings.bounces = 8;
-    check_slhb(world, settings, passes, differences);
+    check_paths("paths", PathAlgorithm{}, world, settings, passes, differences);
+    check_paths("slhb", kSlhb, world, settings, passes, differences);
     check_reference(world, settings, passes, differences);
     return differences.print();
 }

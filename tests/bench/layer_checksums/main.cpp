@@ -6,14 +6,14 @@
 // slhb's kernels on the host. Checksums are those of one machine: pictures depend on its vector instructions.
 
 #include "gi/core/error.h"
-#include <glm/gtc/matrix_transform.hpp>
 #include "gi/core/text.h"
 #include "gi/core/xxhash.h"
+#include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/registry.h"
-#include "gi/methods/slhb/kernels/kernel_render.h"
 #include "gi/scene/generate/builder.h"
 #include "gi/scene/load/load.h"
 #include "gi/scene/motion/moving_world.h"
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <fmt/format.h>
 #include <fstream>

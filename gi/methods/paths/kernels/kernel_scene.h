@@ -1,12 +1,13 @@
 #pragma once
-// Data that the kernels of slhb read from a world and build from it: everything is in one space, and only first
+// Data that the kernels of paths and slhb read from a world and build from it: everything is in one space, and only first
 // surfaces are copied back, on request.
 
-#include "gi/hit_buffers/directions/axis_set.h"
 #include "gi/hit_buffers/build_hit_buffer.h"
-#include "gi/methods/slhb/kernels/path_kernel.h"
+#include "gi/hit_buffers/directions/axis_set.h"
 #include "gi/hit_buffers/shadow_maps/light_points.h"
+#include "gi/methods/paths/kernels/path_kernel.h"
 #include "gi/raster/draw_nearest.h"
+#include "gi/scene/model/used_materials.h"
 #include "gi/scene/model/world_on.h"
 
 #include <algorithm>
@@ -22,7 +23,11 @@ class KernelScene {
 public:
     /// @param most_layers  per texel, see fill_hit_buffer
     KernelScene(World const& world, TriangleSoup const& soup, CutOuts const& cut_outs, std::uint32_t most_layers)
-        : world_(world), soup_(soup), marked_(upload<S>(cut_outs.marked())), most_layers_(most_layers)
+        : world_(world),
+          soup_(soup),
+          marked_(upload<S>(cut_outs.marked())),
+          most_layers_(most_layers),
+          panes_(has_panes(world))
     {
         forget_counts();
     }
@@ -31,6 +36,7 @@ public:
     void update(World const& world, TriangleSoup const& soup, Changes const& changes)
     {
         world_.update(world, changes);
+        panes_ = has_panes(world);
         if (changes.geometry) soup_.update(soup, world.static_triangles);
         if (changes.geometry && bvh_) bvh_->moved(world_.view());
     }
@@ -135,11 +141,20 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
-    /// Traces a path a pixel. Returns a sample for each, valid until the next call.
-    /// @param paths  with the host's parameters and those of the view; this function fills in the rest
-    View<PathSample const> trace(PassOfPaths paths)
+    /// Sets the light samples of a pass.
+    void take_pool(LightPool const& pool)
     {
-        std::size_t const pixels = paths.primary.size();
+        pool_groups_ = upload<S>(pool.groups());
+        pool_lights_ = upload<S>(pool.lights());
+        pool_ = {std::as_const(pool_groups_).view(), std::as_const(pool_lights_).view(), pool.rounds()};
+    }
+
+    /// Traces a path a pixel. Returns a sample for each, valid until the next call.
+    /// @param free  by exact rays alone, see FindBy
+    /// @param paths  with the host's parameters and those of the view; this function fills in the rest
+    View<PathSample const> trace(PassOfPaths paths, bool free)
+    {
+        std::size_t const pixels = paths.pixels;
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
         paths.world = world_.view();
         paths.axes = std::as_const(axis_views_).view();
@@ -147,6 +162,7 @@ public:
         paths.choice = choice_;
         paths.light_points = std::as_const(light_points_).view();
         paths.chances = {std::as_const(chances_).view()};
+        paths.pool = pool_;
         paths.samples = samples_.view();
         paths.counts = counts_.view();
         std::size_t const most = std::min(pixels, kMostOnWay);
@@ -155,12 +171,14 @@ public:
                 w = {}; // first, as both together may be too much
                 w = OnWay(most, bvh_.has_value());
             }
-        if (std::size_t const waiting = paths.confirms ? most : 0; doubtful_.size() != waiting)
-            doubtful_ = ColumnBuffer<DoubtfulLight, S>(waiting);
-        if (bvh_)
-            trace_all<true>(paths);
+        if (std::size_t const waiting = paths.confirms || free ? most : 0; waiting_.size() != waiting)
+            waiting_ = ColumnBuffer<WaitingLight, S>(waiting);
+        if (free)
+            trace_all<FindBy::rays>(paths);
+        else if (bvh_)
+            trace_all<FindBy::look_ups_and_rays>(paths);
         else
-            trace_all<false>(paths);
+            trace_all<FindBy::look_ups>(paths);
         return std::as_const(samples_).view();
     }
     /// Of the paths traced since the last call.
@@ -177,6 +195,8 @@ public:
         ColumnBuffer<PathOnWay, S>& paths; ///< that go on
         ColumnBuffer<RayQuery, S>& queries;
         Buffer<std::uint32_t, S>& count; ///< [0]: of paths
+        ColumnBuffer<WaitingLight, S>& waiting;
+        Buffer<std::uint32_t, S>& waits; ///< [0]: number of waiting lights
         Buffer<PathSample, S>& samples;
     };
     std::function<void(AfterStep const&)> after_step; ///< called by trace()
@@ -186,52 +206,68 @@ private:
 
     /// All paths one surface further, again and again, and the last few to their ends. How many go on from the first
     /// surfaces is not asked, as the host would wait for the answer.
-    template <bool by_rays>
+    template <FindBy by>
     void trace_all(PassOfPaths& paths)
     {
+        constexpr bool by_rays = by != FindBy::look_ups;
+        bool const from_camera = by == FindBy::rays && paths.primary.empty();
         KernelRays const rays = by_rays ? bvh_->rays() : KernelRays{};
         for (paths.first = 0; paths.first < paths.samples.size(); paths.first += kMostOnWay) {
             std::size_t const all = std::min(paths.samples.size() - paths.first, kMostOnWay);
             std::size_t const few = std::min(all / 8, kFewOnWay);
             paths.next = on_way_[0].none();
-            paths.doubtful = none_doubtful();
-            launch(S, "first steps of paths", all, FirstSteps<by_rays>{{paths}});
-            add_doubtful_light(all, rays, paths);
-            if (after_step) after_step(on_way_[0].left(samples_));
+            paths.waiting = none_waiting();
+            if (from_camera)
+                launch(S, "rays of the camera", all, StartRays{{paths}});
+            else
+                launch(S, "first steps of paths", all, FirstSteps<by>{{paths}});
+            if (after_step) after_step(left(0));
+            std::size_t waits = from_camera ? 0 : all; // at most
             int now = 0;
-            for (int surface = 1;; ++surface, now = 1 - now) {
+            for (int surface = from_camera ? 0 : 1;; ++surface, now = 1 - now) {
                 std::size_t const n = surface < std::min(paths.bounces, kSure) ? all : on_way_[now].count();
+                if (by_rays) trace_rays(now, n, waiting_.size() > 0 ? waits : 0, paths);
                 if (n == 0) break;
                 PathsOnWay const from = paths.next;
                 ColumnView<Hit> const hits = on_way_[now].hits();
                 paths.next = on_way_[1 - now].none();
-                paths.doubtful = none_doubtful();
-                if (by_rays)
-                    launch(S, "exact rays of paths", n,
-                           NearestHits{world_.view(), rays, from.queries, hits, {from.count.data, 1}});
+                paths.waiting = none_waiting();
                 if (n > few)
-                    launch(S, "further steps of paths", n,
-                           FurtherSteps<by_rays, false>{{paths}, from, hits, rays});
+                    launch(S, "further steps of paths", n, FurtherSteps<by, false>{{paths}, from, hits, rays});
                 else
-                    launch(S, "last steps of paths", n, FurtherSteps<by_rays, true>{{paths}, from, hits, rays});
-                if (n > few) add_doubtful_light(n, rays, paths); // the last steps add it themselves
-                if (after_step) after_step(on_way_[1 - now].left(samples_));
+                    launch(S, "last steps of paths", n, FurtherSteps<by, true>{{paths}, from, hits, rays});
+                waits = n > few ? n : 0; // the last steps trace their own rays
+                if (after_step) after_step(left(1 - now));
             }
         }
     }
+    void trace_rays(int now, std::size_t nearest, std::size_t waits, PassOfPaths const& paths)
+    {
+        if (nearest + waits == 0) return;
+        auto const launch_rays = [&]<bool panes>(std::bool_constant<panes>) {
+            launch(S, "rays of paths", nearest + waits,
+                   RaysOfSteps<panes>{world_.view(),
+                                      bvh_->rays(),
+                                      nearest,
+                                      paths.next.queries,
+                                      {paths.next.count.data, 1},
+                                      on_way_[now].hits(),
+                                      paths.waiting,
+                                      paths.samples});
+        };
+        if (panes_)
+            launch_rays(std::true_type());
+        else
+            launch_rays(std::false_type());
+    }
 
-    DoubtfulLights none_doubtful()
+    WaitingLights none_waiting()
     {
-        if (doubtful_.size() == 0) return {};
-        fill_bytes(S, doubtful_count_.view().data, 0, sizeof(std::uint32_t));
-        return {doubtful_.view(), doubtful_count_.view()};
+        if (waiting_.size() == 0) return {};
+        fill_bytes(S, waiting_count_.view().data, 0, sizeof(std::uint32_t));
+        return {waiting_.view(), waiting_count_.view()};
     }
-    void add_doubtful_light(std::size_t paths_of_step, KernelRays const& rays, PassOfPaths const& paths)
-    {
-        if (paths.confirms)
-            launch(S, "doubtful light", paths_of_step,
-                   AddDoubtfulLight{world_.view(), rays, paths.doubtful, paths.samples});
-    }
+    AfterStep left(int next) { return on_way_[next].left(waiting_, waiting_count_, samples_); }
 
     /// Memory of paths between two surfaces.
     class OnWay {
@@ -245,7 +281,11 @@ private:
         bool has_rays() const { return queries_.size() > 0; }
         std::size_t count() const { return download(count_).front(); }
         ColumnView<Hit> hits() { return hits_.view(); }
-        AfterStep left(Buffer<PathSample, S>& samples) { return {paths_, queries_, count_, samples}; }
+        AfterStep left(ColumnBuffer<WaitingLight, S>& waiting, Buffer<std::uint32_t, S>& waits,
+                       Buffer<PathSample, S>& samples)
+        {
+            return {paths_, queries_, count_, waiting, waits, samples};
+        }
         PathsOnWay none()
         {
             fill_bytes(S, count_.view().data, 0, sizeof(std::uint32_t));
@@ -306,6 +346,7 @@ private:
     SoupOn<S> soup_;
     Buffer<std::uint8_t, S> marked_;
     std::uint32_t most_layers_;
+    bool panes_;
     std::optional<WorldBvh<S>> bvh_; ///< none if nothing needs exact rays
     std::vector<HitBufferOn<S>> axes_;
     Buffer<AxisView, S> axis_views_;
@@ -317,10 +358,13 @@ private:
     AxisChoice choice_;
     std::vector<std::array<Buffer<NearestTexel, S>, 6>> maps_; ///< per light point, its faces
     Buffer<LightPointView, S> light_points_;
+    Buffer<LightGroup, S> pool_groups_;
+    Buffer<PooledLight, S> pool_lights_;
+    LightPoolView pool_;
     Buffer<PathSample, S> samples_;
     OnWay on_way_[2];
-    ColumnBuffer<DoubtfulLight, S> doubtful_; ///< empty if no exact rays decide
-    Buffer<std::uint32_t, S> doubtful_count_{1};
+    ColumnBuffer<WaitingLight, S> waiting_; ///< empty if no exact rays decide
+    Buffer<std::uint32_t, S> waiting_count_{1};
     Buffer<PathKernelCounts, S> counts_{1024}; ///< threads that add to one number wait for each other
 };
 

@@ -1,16 +1,18 @@
 #pragma once
-// Counterpart of PathsRenderer that runs the passes of slhb as kernels in one space,
-// and keeps structures between passes and frames. Light points, axes and random numbers are the same,
+// Counterpart of PathsRenderer that runs the passes of paths or slhb as kernels in one space,
+// and keeps structures between passes and frames. Light samples, axes and random numbers are the same,
 // so that both trace the same paths up to rounding.
 //
-// Hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
+// Of slhb: hit buffers are built from all triangles: after motion, the buffers used by paths and all shadow maps are
 // rebuilt (dynamic geometry is not added to static buffers as on the CPU). The BVH for exact rays, built if some
 // lobe is narrow or doubts are decided by rays, has a tree of dynamic triangles, which is refitted. Views do not reuse each other's light,
 // and paths do not share vertices. For the limits of paths see path_kernel.h.
 
 #include "gi/hit_buffers/directions/frame_axes.h"
+#include "gi/methods/paths/algorithm.h"
+#include "gi/methods/paths/kernels/kernel_scene.h"
+#include "gi/methods/paths/light_pool.h"
 #include "gi/methods/paths/traced_world.h"
-#include "gi/methods/slhb/kernels/kernel_scene.h"
 #include "gi/render/accumulator.h"
 #include "gi/render/frame_renderer.h"
 #include "gi/render/sums_on.h"
@@ -30,7 +32,8 @@ public:
 
     /// See PathsRenderer.
     KernelRenderer(World const& world, std::span<FrameView const> views, RenderSettings const& settings,
-                   TriangleSoup soup, std::size_t first_moving, Report& report);
+                   TriangleSoup soup, std::size_t first_moving, Report& report,
+                   FirstSurfaces first_surfaces = FirstSurfaces::by_raster);
 
     void end_frame();
     void changed(Changes const& changes);
@@ -48,7 +51,10 @@ public:
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
-    double rays() const { return double(queries_ + exact_rays_ + shadow_lookups_ + doubtful_shadows_); }
+    double rays() const
+    {
+        return double(queries_ + exact_rays_ + shadow_lookups_ + doubtful_shadows_ + shadow_rays_);
+    }
     /// See Windows::option().
     std::string level_option() const { return traced_.windows.option(); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
@@ -65,7 +71,8 @@ private:
         SumsOn<S> sums;
     };
 
-    bool walks() const { return settings_.bounces > 0 || meets_light(world_); }
+    bool free() const { return settings_.of<PathAlgorithm>().surfaces == SurfacesBy::rays; }
+    bool walks() const { return !free() && (settings_.bounces > 0 || meets_light(world_)); }
     void build_exact();
     void make_axes();
     void make_light_points();
@@ -81,7 +88,11 @@ private:
     KernelScene<S> scene_;
     FrameAxes axes_;
     std::optional<LightPoints> light_points_;
-    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0, doubtful_queries_ = 0, doubtful_shadows_ = 0;
+    FirstSurfaces first_surfaces_;
+    LightOrder light_order_; ///< of paths, like the following
+    LightPool lights_;
+    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0, shadow_rays_ = 0, doubtful_queries_ = 0,
+                  doubtful_shadows_ = 0;
     /// Pixels not traced because they are hidden; all pixels; over all passes.
     std::uint64_t hidden_ = 0, pixels_ = 0;
     std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist

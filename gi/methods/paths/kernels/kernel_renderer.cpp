@@ -1,4 +1,4 @@
-#include "gi/methods/slhb/kernels/kernel_renderer.h"
+#include "gi/methods/paths/kernels/kernel_renderer.h"
 
 #include "gi/methods/paths/lobes.h"
 #include "gi/render/pass_samples.h"
@@ -33,13 +33,14 @@ void KernelRenderer<S>::check(Camera const& camera, RenderSettings const& settin
 template <Space S>
 KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const> views,
                                   RenderSettings const& settings, TriangleSoup soup, std::size_t first_moving,
-                                  Report& report)
+                                  Report& report, FirstSurfaces first_surfaces)
     : world_(world),
       settings_(settings),
       report_(report),
       traced_(world, std::move(soup), first_moving, slhb_),
       scene_(world, traced_.soup, traced_.cut_outs, std::uint32_t(slhb_.most_layers)),
-      axes_(slhb_, report)
+      axes_(slhb_, report),
+      first_surfaces_(first_surfaces)
 {
     see(views);
     end_frame();
@@ -51,7 +52,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
 template <Space S>
 void KernelRenderer<S>::build_exact()
 {
-    bool const needed = narrow_somewhere(world_) || slhb_.confirm == Confirming::on;
+    bool const needed = free() || narrow_somewhere(world_) || slhb_.confirm == Confirming::on;
     if (needed && scene_.has_rays()) return scene_.test_alpha(plan_scene(world_).alpha_tests);
     if (needed == scene_.has_rays()) return;
     StageTimer const timer(report_, "build (BVH)");
@@ -83,7 +84,7 @@ void KernelRenderer<S>::make_light_points()
     if (light_points_) earlier_maps_ += light_points_->maps_built();
     scene_.forget_light_points();
     light_points_.emplace(world_, traced_.grid_bounds, traced_.soup, traced_.cut_outs,
-                          LightPointSettings{.count = std::uint32_t(slhb_.light_samples),
+                          LightPointSettings{.count = std::uint32_t(free() ? 0 : slhb_.light_samples),
                                              .fresh = std::uint32_t(slhb_.fresh_light_samples),
                                              .resolution = std::uint32_t(slhb_.shadow_resolution),
                                              .windows = traced_.windows.boxes(),
@@ -135,7 +136,7 @@ void KernelRenderer<S>::see(std::span<FrameView const> views)
         v.hides.assign(now.hidden.begin(), now.hidden.end());
         v.hidden = upload<S>(v.hides);
     }
-    if (traced_.place_windows(views_) && light_points_) {
+    if (!free() && traced_.place_windows(views_) && light_points_) {
         make_axes();
         make_light_points();
     }
@@ -150,6 +151,14 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
         light_points_->refresh(index);
         finish(S);
     }
+    if (free()) {
+        light_order_.update(world_);
+        std::size_t pixels = 0;
+        for (View const& v : views_) pixels += v.pixels();
+        lights_.fill(light_order_, world_, LightPool::groups_for(pixels, world_), settings_.seed, index);
+        scene_.take_pool(lights_);
+    }
+    if (first_surfaces_ == FirstSurfaces::by_rays) return;
     StageTimer const timer(report_, "G-buffer");
     std::vector<PerspectiveGrid> grids;
     for (View& v : views_) {
@@ -176,6 +185,7 @@ void KernelRenderer<S>::passes(std::uint32_t index, std::uint32_t count, std::sp
     queries_ += done.queries;
     exact_rays_ += done.exact_rays;
     shadow_lookups_ += done.shadow_lookups;
+    shadow_rays_ += done.shadow_rays;
     doubtful_queries_ += done.doubtful_queries;
     doubtful_shadows_ += done.doubtful_shadows;
     for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.give(sums[k], sums[k].paths);
@@ -187,23 +197,27 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
     prepare(index);
     StageTimer const timer(report_, "paths");
     bool const smooth = smooth_somewhere(world_);
-    scene_.start_pass(axes_.set(), light_points_->fixed() ? light_points_->chances() : AliasTableView{});
+    if (!free())
+        scene_.start_pass(axes_.set(), light_points_->fixed() ? light_points_->chances() : AliasTableView{});
     for (std::size_t k = 0; k < views_.size(); ++k) {
         View& v = views_[k];
         Accumulator& to = sums[k];
         PassOfPaths paths{};
-        paths.camera = v.eye;
+        paths.camera = first_surfaces_ == FirstSurfaces::by_rays ? v.rays : v.eye;
         paths.primary = std::as_const(v.primary).view();
         paths.hidden = std::as_const(v.hidden).view();
         paths.place = place_in_pixel(v.filter, settings_.seed, index);
+        paths.filter = v.filter;
+        paths.pixels = v.pixels();
         paths.width = std::uint32_t(v.width);
         paths.bounces = settings_.bounces;
         paths.smooth = smooth;
-        paths.confirms = slhb_.confirm == Confirming::on;
+        paths.meets_light = meets_light(world_);
+        paths.confirms = !free() && slhb_.confirm == Confirming::on;
         paths.roulette = settings_.of<PathsSettings>().roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
-        v.sums.add(scene_.trace(paths));
+        v.sums.add(scene_.trace(paths, free()));
         ++to.paths;
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
@@ -224,10 +238,14 @@ void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
 template <Space S>
 void KernelRenderer<S>::report_work() const
 {
-    report_.count("hit-buffer queries", double(queries_));
     report_.count("exact rays", double(exact_rays_));
-    report_.count("shadow-map look-ups", double(shadow_lookups_));
-    if (slhb_.confirm == Confirming::on) {
+    if (free()) {
+        report_.count("shadow rays", double(shadow_rays_));
+    } else {
+        report_.count("hit-buffer queries", double(queries_));
+        report_.count("shadow-map look-ups", double(shadow_lookups_));
+    }
+    if (!free() && slhb_.confirm == Confirming::on) {
         report_.count("doubtful look-ups decided by exact rays", double(doubtful_queries_));
         report_.count("doubtful shadow-map look-ups decided by exact rays", double(doubtful_shadows_));
     }

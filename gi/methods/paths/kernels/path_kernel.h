@@ -1,18 +1,21 @@
 #pragma once
-// The paths of a pass by kernels: each launch moves all paths to their next surface,
+// The paths of a pass by kernels, of the methods paths and slhb: each launch moves all paths to their next surface,
 // then only those that continue, so that the threads of a device do the same at the same time (Laine et al. 2013,
 // "Megakernels Considered Harmful"). Estimators and random numbers are those of PathsTracer (tracer.h),
 // so that both trace the same paths up to rounding.
 //
-// Mirrors, glass and narrow lobes continue by exact rays through the project's own BVH, traced by a kernel of
-// their own (NearestHits). Cone, gathering, interleaving and shared vertices are not supported.
+// Exact rays through the project's own BVH are traced by a kernel of their own (RaysOfSteps): all of paths, those of
+// mirrors, glass and narrow lobes of slhb, and what is doubtful there. Cone, gathering, interleaving, shared vertices
+// and the radiance cache are not supported.
 
-#include "gi/kernel/atomics.h"
 #include "gi/hit_buffers/axis_step.h"
-#include "gi/render/path_random.h"
 #include "gi/hit_buffers/shadow_maps/shadow_look.h"
+#include "gi/kernel/atomics.h"
+#include "gi/methods/paths/light_pool.h"
+#include "gi/render/path_random.h"
 #include "gi/render/ray_kernels.h"
 #include "gi/render/ray_path.h"
+#include "gi/render/sampling.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
 namespace gi {
@@ -25,7 +28,7 @@ struct LightPointView {
 };
 
 struct PathKernelCounts {
-    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0;
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0;
     std::uint64_t doubtful_queries = 0, doubtful_shadows = 0; ///< of these look-ups, decided by exact rays
     std::uint64_t cut_paths = 0, invalid_paths = 0;
 
@@ -34,6 +37,7 @@ struct PathKernelCounts {
         queries += o.queries;
         exact_rays += o.exact_rays;
         shadow_lookups += o.shadow_lookups;
+        shadow_rays += o.shadow_rays;
         doubtful_queries += o.doubtful_queries;
         doubtful_shadows += o.doubtful_shadows;
         cut_paths += o.cut_paths;
@@ -59,16 +63,16 @@ struct PathsOnWay {
     View<std::uint32_t> count;    ///< [0]
 };
 
-/// Light that arrives if a shadow ray is free, as the shadow map's texels disagree.
-struct DoubtfulLight {
+/// Light that arrives as far as a shadow ray is free: of paths always, of slhb where the shadow map's texels disagree.
+struct WaitingLight {
     RayQuery query; ///< no_query() = none
     vec3 light;
     std::uint32_t pixel;
     int scatterings; ///< of the light, see layer_of()
 };
 
-struct DoubtfulLights {
-    ColumnView<DoubtfulLight> lights;
+struct WaitingLights {
+    ColumnView<WaitingLight> lights;
     View<std::uint32_t> count; ///< [0]
 };
 
@@ -76,30 +80,43 @@ struct DoubtfulLights {
 struct PassOfPaths {
     WorldView world;
     CameraRays camera;
-    View<NearestTexel const> primary; ///< per pixel, in rows of `width`
+    View<NearestTexel const> primary; ///< per pixel, in rows of `width`; empty = StartRays
     View<std::uint8_t const> hidden;  ///< per pixel: 1 = hidden, nothing is traced; empty = none hidden
-    vec2 place;                       ///< subpixel position, the same for all pixels
+    vec2 place;                       ///< subpixel position, the same for all pixels of `primary`
+    PixelFilter filter;               ///< of StartRays
+    std::size_t pixels;
     std::uint32_t width;
     View<AxisView const> axes; ///< of all levels, see finest_slot()
     std::uint32_t axes_of_level;
     AxisChoice choice;
     View<LightPointView const> light_points;
     AliasTableView chances; ///< of the light points; empty = equal
+    LightPoolView pool;     ///< in place of light points
     int bounces;
     float roulette; ///< see SlhbSettings
     bool smooth;    ///< the world contains a mirror or glass
+    bool meets_light; ///< paths can hit light: a sky or emissive surfaces
     bool confirms;  ///< exact rays decide where look-ups and shadow maps are doubtful
     std::uint32_t seed, pass;
-    std::size_t first;             ///< pixel of the first item of FirstSteps
+    std::size_t first;             ///< pixel of the first item of FirstSteps or StartRays
     View<PathSample> samples;      ///< per pixel
     PathsOnWay next;               ///< to which paths are added
-    DoubtfulLights doubtful;       ///< to which their light is added
+    WaitingLights waiting;         ///< to which their light is added
     View<PathKernelCounts> counts; ///< to be added up
 };
 
-/// One step of paths. @tparam by_rays  some may need exact rays
-template <bool by_rays>
+/// How paths find surfaces and whether light samples are visible.
+enum class FindBy : std::uint8_t {
+    look_ups,          ///< along axes, and by shadow maps
+    look_ups_and_rays, ///< exact rays too, by mirrors, glass and narrow lobes, and where look-ups are doubtful
+    rays               ///< each path in its own directions, and to light samples of a pool
+};
+
+/// One step of paths.
+template <FindBy by>
 struct StepPaths : PassOfPaths {
+    static constexpr bool by_rays = by != FindBy::look_ups, free = by == FindBy::rays;
+
 protected:
     /// State of one path.
     struct State : PathState {
@@ -112,7 +129,7 @@ protected:
         float distance = 0;          ///< m, from the last surface
         int vertex = 0;              ///< number of surfaces before, delta lobes included
         RayQuery query = no_query(); ///< the exact ray that the path needs now
-        DoubtfulLight doubtful{
+        WaitingLight waiting{
             .query = no_query(), .light = vec3{0}, .pixel = 0, .scatterings = 0}; ///< at its last surface
 
         GI_FN std::uint32_t dimension(PathDimension d) const { return dimension_of(std::uint32_t(vertex), d); }
@@ -127,6 +144,9 @@ protected:
     GI_FN vec3 sky(State const& s) const;
     GI_FN vec3 emission(State const& s, ShadingPoint const& at) const;
     GI_FN vec3 direct(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    /// The same, of a light sample of the pool, whose shadow ray waits.
+    GI_FN vec3 pooled(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
+    GI_FN RayQuery shadow_query(State const& s, ShadingPoint const& at, LightSample const& light) const;
     /// Keeps the light that waits for its shadow ray.
     GI_FN void wait(std::size_t pixel, State const& s) const;
     GI_FN void go_on(std::size_t pixel, State const& s) const;
@@ -139,6 +159,9 @@ protected:
     GI_FN bool follow_ray(State& s, ShadingPoint const& at, vec3 direction, PathKernelCounts& local) const;
     GI_FN bool scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
                                   PathKernelCounts& local) const;
+    /// Into a cosine-distributed direction.
+    GI_FN bool scatter_freely(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                              PathKernelCounts& local) const;
     GI_FN bool survives(State& s) const
     {
         return survives_roulette(s, roulette, [&s] { return s.number(PathDimension::roulette); });
@@ -153,30 +176,49 @@ protected:
     GI_FN void add_counts(std::size_t item, PathKernelCounts const& local) const;
 };
 
-/// Adds the light whose shadow ray is free. Item = the light.
-struct AddDoubtfulLight {
+/// Exact rays between two steps: to the next surfaces of paths, then to the light that waited at the last ones, which
+/// is added if nothing is in its way. In one launch, so that a device is not left idle between them.
+/// @tparam panes  see KernelRays::transmittance
+template <bool panes>
+struct RaysOfSteps {
     WorldView world;
     KernelRays rays;
-    DoubtfulLights doubtful;
+    std::size_t nearest; ///< items for queries; the further ones are for light
+    ColumnView<RayQuery> queries;
+    View<std::uint32_t const> count; ///< [0]: of queries
+    ColumnView<Hit> hits;            ///< of queries
+    WaitingLights waiting;
     View<PathSample> samples; ///< per pixel
 
     GI_FN void operator()(std::size_t i) const
     {
-        if (i >= doubtful.count[0]) return;
-        DoubtfulLight const d = doubtful.lights.load(i);
-        if (!rays.occluded(world, d.query)) add_light(samples[d.pixel], d.scatterings, d.light);
+        if (i < nearest) {
+            if (i >= count[0]) return;
+            RayQuery const q = queries.load(i);
+            if (q.reach > 0) hits.store(i, rays.nearest(world, q));
+            return;
+        }
+        if (i - nearest >= waiting.count[0]) return;
+        WaitingLight const w = waiting.lights.load(i - nearest);
+        vec3 const left = rays.transmittance<panes>(world, w.query);
+        if (left != vec3{0}) add_light(samples[w.pixel], w.scatterings, left * w.light);
     }
 };
 
+/// Rays of the camera, each through its own place in the pixel and on the lens. Item = pixel, from `first` on.
+struct StartRays : StepPaths<FindBy::rays> {
+    GI_FN void operator()(std::size_t i) const;
+};
+
 /// First step. Item = pixel, from `first` on.
-template <bool by_rays>
-struct FirstSteps : StepPaths<by_rays> {
+template <FindBy by>
+struct FirstSteps : StepPaths<by> {
     GI_FN void operator()(std::size_t i) const;
 };
 
 /// A further step, or with `last` all that are left: the last paths are too few to fill a device. Item = path.
-template <bool by_rays, bool last>
-struct FurtherSteps : StepPaths<by_rays> {
+template <FindBy by, bool last>
+struct FurtherSteps : StepPaths<by> {
     PathsOnWay from;
     ColumnView<Hit> hits; ///< of from.queries
     KernelRays rays;      ///< for the last
@@ -186,4 +228,4 @@ struct FurtherSteps : StepPaths<by_rays> {
 
 } // namespace gi
 
-#include "gi/methods/slhb/kernels/path_kernel.inl.h"
+#include "gi/methods/paths/kernels/path_kernel.inl.h"

@@ -5,8 +5,8 @@
 
 namespace gi {
 
-template <bool by_rays>
-GI_FN typename StepPaths<by_rays>::State StepPaths<by_rays>::start(std::size_t pixel) const
+template <FindBy by>
+GI_FN typename StepPaths<by>::State StepPaths<by>::start(std::size_t pixel) const
 {
     auto const id = std::uint32_t(pixel);
     Ray const ray = camera.through(vec2{float(id % width), float(id / width)} + place);
@@ -18,8 +18,8 @@ GI_FN typename StepPaths<by_rays>::State StepPaths<by_rays>::start(std::size_t p
     return s;
 }
 
-template <bool by_rays>
-GI_FN vec3 StepPaths<by_rays>::sky(State const& s) const
+template <FindBy by>
+GI_FN vec3 StepPaths<by>::sky(State const& s) const
 {
     if (s.vertex == 0) return background_radiance(world, s.direction);
     if (world.environment_radiance.empty()) return vec3{0};
@@ -27,16 +27,16 @@ GI_FN vec3 StepPaths<by_rays>::sky(State const& s) const
 }
 
 /// Emission of a light hit by the camera, a look-up or an exact ray.
-template <bool by_rays>
-GI_FN vec3 StepPaths<by_rays>::emission(State const& s, ShadingPoint const& at) const
+template <FindBy by>
+GI_FN vec3 StepPaths<by>::emission(State const& s, ShadingPoint const& at) const
 {
     if (!(max_component(at.emission) > 0)) return vec3{0};
     return s.throughput * met_emission(world, s, at, s.triangle, s.direction, s.distance);
 }
 
-template <bool by_rays>
-GI_FN vec3 StepPaths<by_rays>::direct(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                      PathKernelCounts& local) const
+template <FindBy by>
+GI_FN vec3 StepPaths<by>::direct(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                 PathKernelCounts& local) const
 {
     std::size_t k = 0;
     if (!chances.empty()) {
@@ -56,27 +56,84 @@ GI_FN vec3 StepPaths<by_rays>::direct(State& s, ShadingPoint const& at, vec3 wo,
     ShadowPlace const in_map = shadow_detail::look(l.shadow, at.position, at.geometric_normal, u);
     ++local.shadow_lookups;
     if (by_rays && confirms) {
-        LitBy const by =
+        LitBy const found =
             shadow_detail::lit_by(l.shadow, in_map, world.surfaces, at.position, at.geometric_normal, s.triangle);
-        if (by != LitBy::some) return by == LitBy::all ? s.throughput * value : vec3{0};
-        RayQuery ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
+        if (found != LitBy::some) return found == LitBy::all ? s.throughput * value : vec3{0};
+        RayQuery const ray = shadow_query(s, at, light);
         if (!(ray.reach > 0)) return s.throughput * value; // the light lies on the surface
-        ray.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
         if (!all_finite(s.throughput * value)) {
             ++local.invalid_paths;
             return vec3{0};
         }
         ++local.doubtful_shadows;
-        s.doubtful = {ray, s.throughput * value, 0, s.scatterings + 1};
+        s.waiting = {ray, s.throughput * value, 0, s.scatterings + 1};
         return vec3{0};
     }
     bool const reached = shadow_detail::lit(l.shadow, in_map, world.surfaces, at.position, s.triangle);
     return reached ? s.throughput * value : vec3{0};
 }
 
-template <bool by_rays>
-GI_FN bool StepPaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
-                                              PathKernelCounts& local) const
+template <FindBy by>
+GI_FN RayQuery StepPaths<by>::shadow_query(State const& s, ShadingPoint const& at, LightSample const& light) const
+{
+    RayQuery ray = shadow_ray(at.position, at.geometric_normal, at.clearance, light);
+    ray.seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), ~s.random.index);
+    return ray;
+}
+
+template <FindBy by>
+GI_FN vec3 StepPaths<by>::pooled(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                 PathKernelCounts& local) const
+{
+    ChosenLight const chosen = pool.choose(at.position, at.frame.normal, s.number(PathDimension::light_point),
+                                           s.number(PathDimension::light_sample_pick));
+    if (chosen.light == nullptr) return vec3{0};
+    LightSample const light = chosen.light->seen_from(world, at.position);
+    auto const pdf = [narrow](BsdfValue const& bsdf, vec3 wi) {
+        return narrow ? bsdf.pdf : glm::max(wi.z, 0.0f) * kInvPi;
+    };
+    vec3 const value = s.throughput * (chosen.weight * unshadowed_light(at, wo, light, lit_alone(s, narrow), pdf));
+    if (!(max_component(value) > 0)) return vec3{0};
+    RayQuery const ray = shadow_query(s, at, light);
+    if (!(ray.reach > 0)) return value; // the light lies on the surface
+    if (!all_finite(value)) {
+        ++local.invalid_paths;
+        return vec3{0};
+    }
+    ++local.shadow_rays;
+    s.waiting = {ray, value, 0, s.scatterings + 1};
+    return vec3{0};
+}
+
+template <FindBy by>
+GI_FN bool StepPaths<by>::scatter_freely(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                         PathKernelCounts& local) const
+{
+    if (is_last(s) || !(wo.z > 0)) return false;
+    // Beyond the last surface, only light that a path can hit would contribute.
+    if (s.scatterings == bounces && (!meets_light || lit_alone(s, narrow))) return false;
+    vec3 const wi =
+        square_to_cosine_hemisphere({s.number(PathDimension::lobe_u), s.number(PathDimension::lobe_v)});
+    vec3 const direction = at.frame.to_world(wi);
+    if (!(wi.z > 0) || !(glm::dot(direction, at.geometric_normal) > 0)) return false;
+    if (!narrow) {
+        s.arrival_pdf = wi.z * kInvPi;
+        s.throughput *= at.bsdf.diffuse;
+    } else {
+        BsdfValue const value = evaluate(at.bsdf, wo, wi);
+        s.arrival_pdf = value.pdf;
+        if (!(s.arrival_pdf > 0)) return false;
+        s.throughput *= value.f * (wi.z / s.arrival_pdf);
+    }
+    if (!survives(s)) return false;
+    ++s.scatterings;
+    ++s.vertex;
+    return follow_ray(s, at, direction, local);
+}
+
+template <FindBy by>
+GI_FN bool StepPaths<by>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 wo, float u_lobe,
+                                         PathKernelCounts& local) const
 {
     vec2 const u{s.number(PathDimension::lobe_u), s.number(PathDimension::lobe_v)};
     BsdfSample const sampled = gi::sample(at.bsdf, wo, at.front, u_lobe, u);
@@ -91,9 +148,9 @@ GI_FN bool StepPaths<by_rays>::scatter_by_ray(State& s, ShadingPoint const& at, 
     return follow_ray(s, at, direction, local);
 }
 
-template <bool by_rays>
-GI_FN bool StepPaths<by_rays>::follow_ray(State& s, ShadingPoint const& at, vec3 direction,
-                                          PathKernelCounts& local) const
+template <FindBy by>
+GI_FN bool StepPaths<by>::follow_ray(State& s, ShadingPoint const& at, vec3 direction,
+                                     PathKernelCounts& local) const
 {
     std::uint32_t const ray_seed = hash_words(s.random.own_seed() + std::uint32_t(s.vertex), pass);
     s.query = RayQuery{.ray = {leave(at, direction), direction}, .seed = ray_seed};
@@ -102,9 +159,9 @@ GI_FN bool StepPaths<by_rays>::follow_ray(State& s, ShadingPoint const& at, vec3
     return true;
 }
 
-template <bool by_rays>
-GI_FN bool StepPaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                                  PathKernelCounts& local) const
+template <FindBy by>
+GI_FN bool StepPaths<by>::scatter_by_look_up(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                             PathKernelCounts& local) const
 {
     static_assert(kNoLayerHit == kNoPrimitive);
     if (is_last(s) || !(wo.z > 0)) return false;
@@ -140,18 +197,21 @@ GI_FN bool StepPaths<by_rays>::scatter_by_look_up(State& s, ShadingPoint const& 
     return true;
 }
 
-template <bool by_rays>
-GI_FN bool StepPaths<by_rays>::scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
-                                       PathKernelCounts& local) const
+template <FindBy by>
+GI_FN bool StepPaths<by>::scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow,
+                                  PathKernelCounts& local) const
 {
     if (by_rays && narrow)
         if (float const u_lobe = s.number(PathDimension::lobe); takes_narrow_lobe(at.bsdf, wo, u_lobe))
             return scatter_by_ray(s, at, wo, u_lobe, local);
-    return scatter_by_look_up(s, at, wo, narrow, local);
+    if constexpr (free)
+        return scatter_freely(s, at, wo, narrow, local);
+    else
+        return scatter_by_look_up(s, at, wo, narrow, local);
 }
 
-template <bool by_rays>
-GI_FN void StepPaths<by_rays>::add_counts(std::size_t item, PathKernelCounts const& local) const
+template <FindBy by>
+GI_FN void StepPaths<by>::add_counts(std::size_t item, PathKernelCounts const& local) const
 {
     PathKernelCounts& all = counts[item % counts.size()];
     auto const more = [](std::uint64_t& sum, std::uint64_t n) {
@@ -160,14 +220,15 @@ GI_FN void StepPaths<by_rays>::add_counts(std::size_t item, PathKernelCounts con
     more(all.queries, local.queries);
     more(all.exact_rays, local.exact_rays);
     more(all.shadow_lookups, local.shadow_lookups);
+    more(all.shadow_rays, local.shadow_rays);
     more(all.doubtful_queries, local.doubtful_queries);
     more(all.doubtful_shadows, local.doubtful_shadows);
     more(all.cut_paths, local.cut_paths);
     more(all.invalid_paths, local.invalid_paths);
 }
 
-template <bool by_rays>
-GI_FN bool StepPaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts& local) const
+template <FindBy by>
+GI_FN bool StepPaths<by>::step(State& s, PathSample& out, PathKernelCounts& local) const
 {
     if (s.triangle == kNoPrimitive) {
         add_light(out, s.scatterings, sky(s));
@@ -186,14 +247,20 @@ GI_FN bool StepPaths<by_rays>::step(State& s, PathSample& out, PathKernelCounts&
         return false;
     }
     vec3 const wo = at.frame.to_local(-s.direction);
-    bool const narrow = by_rays && has_narrow_lobe(at.bsdf);
-    if (!is_last(s) && !light_points.empty() && !only_delta(at.bsdf))
-        add_light(out, s.scatterings + 1, direct(s, at, wo, narrow, local));
+    // Axes can only sample broad lobes; exact rays can sample any.
+    bool const narrow = free ? !bsdf_detail::is_matt(at.bsdf) : by_rays && has_narrow_lobe(at.bsdf);
+    bool const has_lights = free ? !pool.groups.empty() : !light_points.empty();
+    if (!is_last(s) && has_lights && !only_delta(at.bsdf)) {
+        if constexpr (free)
+            add_light(out, s.scatterings + 1, pooled(s, at, wo, narrow, local));
+        else
+            add_light(out, s.scatterings + 1, direct(s, at, wo, narrow, local));
+    }
     return scatter(s, at, wo, narrow, local);
 }
 
-template <bool by_rays>
-GI_FN void StepPaths<by_rays>::meet(State& s, Hit const& hit)
+template <FindBy by>
+GI_FN void StepPaths<by>::meet(State& s, Hit const& hit)
 {
     static_assert(kNoTriangle == kNoPrimitive);
     s.triangle = hit.triangle;
@@ -203,8 +270,8 @@ GI_FN void StepPaths<by_rays>::meet(State& s, Hit const& hit)
     s.query = no_query();
 }
 
-template <bool by_rays>
-GI_FN void StepPaths<by_rays>::go_on(std::size_t pixel, State const& s) const
+template <FindBy by>
+GI_FN void StepPaths<by>::go_on(std::size_t pixel, State const& s) const
 {
     std::uint32_t const k = atomic_add(next.count[0], 1);
     next.paths.store(k, {.state = s,
@@ -217,18 +284,37 @@ GI_FN void StepPaths<by_rays>::go_on(std::size_t pixel, State const& s) const
     if (by_rays) next.queries.store(k, s.query);
 }
 
-template <bool by_rays>
-GI_FN void StepPaths<by_rays>::wait(std::size_t pixel, State const& s) const
+template <FindBy by>
+GI_FN void StepPaths<by>::wait(std::size_t pixel, State const& s) const
 {
-    if (!by_rays || !(s.doubtful.query.reach > 0)) return;
-    std::uint32_t const k = atomic_add(doubtful.count[0], 1);
-    DoubtfulLight light = s.doubtful;
+    if (!by_rays || !(s.waiting.query.reach > 0)) return;
+    std::uint32_t const k = atomic_add(waiting.count[0], 1);
+    WaitingLight light = s.waiting;
     light.pixel = std::uint32_t(pixel);
-    doubtful.lights.store(k, light);
+    waiting.lights.store(k, light);
 }
 
-template <bool by_rays>
-GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
+GI_FN inline void StartRays::operator()(std::size_t item) const
+{
+    constexpr std::uint32_t kLens = 0x1e450000; // as of PathsTracer
+    std::size_t const i = first + item;
+    auto const id = std::uint32_t(i);
+    if (!hidden.empty() && hidden[i] != 0) {
+        samples[i] = {};
+        return;
+    }
+    State s;
+    s.random = pixel_stream(seed, id, width, pass);
+    vec2 const at =
+        vec2{float(id % width) + 0.5f, float(id / width) + 0.5f} + filter_offset(filter, s.random.sample2(0));
+    Ray const ray = camera_ray(camera, at, [&] { return s.random.sample2(kLens); });
+    s.query = {.ray = ray, .seed = s.random.own_seed() + pass, .start = camera_clearance(ray.origin)};
+    s.direction = ray.direction;
+    go_on(i, s);
+}
+
+template <FindBy by>
+GI_FN void FirstSteps<by>::operator()(std::size_t item) const
 {
     std::size_t const i = this->first + item;
     PathKernelCounts local;
@@ -245,13 +331,14 @@ GI_FN void FirstSteps<by_rays>::operator()(std::size_t item) const
     this->samples[i] = out;
 }
 
-template <bool by_rays, bool last>
-GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
+template <FindBy by, bool last>
+GI_FN void FurtherSteps<by, last>::operator()(std::size_t i) const
 {
+    using Own = StepPaths<by>;
     if (i >= from.count[0]) return;
     PathKernelCounts local;
     PathOnWay const path = from.paths.load(i);
-    typename StepPaths<by_rays>::State s;
+    typename Own::State s;
     static_cast<PathState&>(s) = path.state;
     s.random = pixel_stream(this->seed, path.pixel, this->width, this->pass);
     s.vertex = path.vertex;
@@ -260,17 +347,17 @@ GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
     s.position = path.position;
     s.has_position = true;
     s.distance = path.distance;
-    if (by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
+    if (Own::by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
     PathSample out;
     auto const light_last = [&] {
-        if (!by_rays || !(s.doubtful.query.reach > 0)) return;
-        if (!rays.occluded(this->world, s.doubtful.query))
-            add_light(out, s.doubtful.scatterings, s.doubtful.light);
-        s.doubtful.query = no_query();
+        if (!Own::by_rays || !(s.waiting.query.reach > 0)) return;
+        vec3 const left = rays.template transmittance<true>(this->world, s.waiting.query);
+        if (left != vec3{0}) add_light(out, s.waiting.scatterings, left * s.waiting.light);
+        s.waiting.query = no_query();
     };
     bool goes_on = this->step(s, out, local);
     while (last && goes_on) {
-        if (by_rays && s.query.reach > 0) this->meet(s, rays.nearest(this->world, s.query));
+        if (Own::by_rays && s.query.reach > 0) this->meet(s, rays.nearest(this->world, s.query));
         light_last();
         goes_on = this->step(s, out, local);
     }
@@ -279,12 +366,17 @@ GI_FN void FurtherSteps<by_rays, last>::operator()(std::size_t i) const
     else
         this->wait(path.pixel, s);
     PathSample& sum = this->samples[path.pixel];
-    for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
+    bool const is_first = path.vertex == 0; // of the path that a ray of the camera began
+    if (!is_first)
+        for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
     if (goes_on)
         this->go_on(path.pixel, s);
     else
         local.invalid_paths += discard_invalid(out);
-    sum.radiance = out.radiance;
+    if (is_first)
+        sum = out;
+    else
+        sum.radiance = out.radiance;
     this->add_counts(i, local);
 }
 
