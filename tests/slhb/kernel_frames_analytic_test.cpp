@@ -3,6 +3,7 @@
 
 #include "gi/hit_buffers/settings.h"
 #include "gi/scene/motion/animation.h"
+#include "gi/methods/paths/kernels/kernel_frames.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
 

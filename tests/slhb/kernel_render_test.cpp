@@ -5,6 +5,7 @@
 #include "gi/hit_buffers/settings.h"
 #include "gi/light_paths/settings.h"
 #include "gi/methods/paths/kernels/kernel_render.h"
+#include "tests/slhb/kernel_rooms.h"
 #include "tests/slhb/slhb_render.h"
 #include "tests/support/on_device.h"
 
@@ -21,20 +22,6 @@ SlhbRun render_with_kernels(Space space, World const& world, Camera const& camer
     EXPECT_EQ(run.losses.count("path terms that were not finite, dropped"), 0u);
     return run;
 }
-
-/// A room with a block and a ball in it; what lights it is added by the test.
-Scene room()
-{
-    Scene scene;
-    int const grey = add_material(scene, lambert(vec3{0.6f}));
-    add_box(scene, {-1, -1, -1}, {1, 1, 1}, grey, true);
-    add_box(scene, {-0.4f, -1, -0.4f}, {0.3f, 0, 0.2f}, add_material(scene, lambert(vec3{0.3f, 0.6f, 0.2f})),
-            false);
-    add_sphere(scene, {0.5f, -0.6f, 0.4f}, 0.3f, 3, add_material(scene, lambert(vec3{0.7f, 0.2f, 0.2f})), true);
-    return scene;
-}
-
-Camera room_camera() { return look_at({0.8, 0.5, 0.9}, {-0.2, -0.5, -0.3}, 70); }
 
 /// Few pixels and large buffers, so that the CPU shares no endings.
 RenderSettings settings_of(std::uint32_t paths, int bounces)
@@ -146,25 +133,6 @@ void check_cut_outs()
     }
 }
 LIGHTWELL_TEST_BOTH(KernelRender, CutOutsAsOnTheCpu, check_cut_outs);
-
-Material rough_metal(float roughness)
-{
-    Material m;
-    m.metallic = 1;
-    m.roughness = roughness;
-    m.base_color = {0.9f, 0.7f, 0.4f};
-    return m;
-}
-
-/// A room with a mirror, a ball of glass and one of metal whose lobe is narrow.
-Scene shiny_room()
-{
-    Scene scene = room();
-    add_quad(scene, {-0.95f, -0.8f, -0.6f}, {0, 1.2f, 0}, {0, 0, 1.2f}, add_material(scene, mirror(vec3{0.9f})));
-    add_sphere(scene, {-0.1f, 0.3f, 0}, 0.25f, 3, add_material(scene, glass(1.5f, false)), true);
-    add_sphere(scene, {0.5f, 0, -0.4f}, 0.25f, 3, add_material(scene, rough_metal(0.3f)), true);
-    return scene;
-}
 
 template <Space S>
 void check_narrow_lobes()

@@ -301,8 +301,8 @@ private:
 
     static constexpr int kSure = 4; ///< surfaces from which most paths go on
     static constexpr std::size_t kFewOnWay = std::size_t(1) << 14;
-    /// Bounds memory, and is enough to fill a device.
-    static constexpr std::size_t kMostOnWay = std::size_t(1) << 20;
+    /// Bounds memory (1.2 GB, if a picture has so many pixels); a headset's eyes have fewer, so that a pass is traced at once.
+    static constexpr std::size_t kMostOnWay = std::size_t(1) << 22;
 
     template <class Work>
     void with_cut_outs(Work const& work) const
