@@ -30,6 +30,18 @@ GI_FN inline std::uint64_t atomic_add(std::uint64_t& at, std::uint64_t value)
 #endif
 }
 
+/// Writes `value` if there is `expected`. Returns what was there.
+GI_FN inline std::uint64_t atomic_exchange_if(std::uint64_t& at, std::uint64_t expected, std::uint64_t value)
+{
+#if defined(__CUDA_ARCH__)
+    return atomicCAS(reinterpret_cast<unsigned long long*>(&at), static_cast<unsigned long long>(expected),
+                     static_cast<unsigned long long>(value));
+#else
+    std::atomic_ref<std::uint64_t>(at).compare_exchange_strong(expected, value, std::memory_order_relaxed);
+    return expected;
+#endif
+}
+
 GI_FN inline void atomic_max(std::uint64_t& at, std::uint64_t value)
 {
 #if defined(__CUDA_ARCH__)

@@ -28,6 +28,11 @@ struct ColumnView {
         Words const item = __builtin_bit_cast(Words, value);
         for (std::size_t k = 0; k < item.size(); ++k) words[k * count + i] = item[k];
     }
+    /// Changes one word of an item.
+    GI_FN void set_word(std::size_t i, std::size_t word, std::uint32_t value) const
+    {
+        words[word * count + i] = value;
+    }
 };
 
 /// Owns `count` uninitialised items.

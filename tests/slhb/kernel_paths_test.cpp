@@ -3,6 +3,7 @@
 
 #include "gi/core/error.h"
 #include "gi/light_paths/settings.h"
+#include "gi/methods/paths/kernels/kernel_cache.h"
 #include "gi/methods/paths/kernels/kernel_frames.h"
 #include "gi/methods/paths/kernels/kernel_render.h"
 #include "gi/methods/paths/light_pool.h"
@@ -160,6 +161,83 @@ void check_frames_of_paths()
     }
 }
 LIGHTWELL_TEST_BOTH(KernelPaths, FramesOfTwoEyesAsByTheCpu, check_frames_of_paths);
+
+template <Space S>
+void check_paths_to_cells()
+{
+    Scene scene = shiny_room();
+    add_lamp(scene);
+    World const world = world_of(std::move(scene));
+    RenderSettings s = path_settings(24, 6);
+    s.of<PathsSettings>().cache = RadianceCaching::on;
+    Report report, of_cpu, again;
+    auto const found = render_paths_by_kernels(S, world, room_camera(), s, {}, {}, report);
+    Picture const expected = render_paths(world, room_camera(), s, {}, {}, of_cpu).picture;
+    double const reads = of_cpu.counts().at("paths that ended in the radiance cache");
+    EXPECT_GT(reads, 1000);
+    EXPECT_NEAR(report.counts().at("paths that ended in the radiance cache"), reads, 0.02 * reads);
+    double const cells = of_cpu.counts().at("cells of the radiance cache");
+    EXPECT_NEAR(report.counts().at("cells of the radiance cache"), cells, 0.02 * cells);
+    for (char const* const name : {"color", "L1", "L2"}) {
+        double const truth = mean_of(expected, name).mean;
+        EXPECT_NEAR(mean_of(found.picture, name).mean, truth, 0.005 * truth) << name;
+    }
+    EXPECT_LT(relative_mse(*found.picture.find("color"), *expected.find("color")), 1e-4);
+    // Integer sums are the same whatever the order of threads.
+    auto const second = render_paths_by_kernels(S, world, room_camera(), s, {}, {}, again);
+    EXPECT_EQ(second.picture.find("color")->data, found.picture.find("color")->data);
+}
+LIGHTWELL_TEST_BOTH(KernelPaths, CellsAsByTheCpuAndTheSameBitsTwice, check_paths_to_cells);
+
+template <Space S>
+void check_cells_that_grow()
+{
+    KernelCache<S> cache(1, std::size_t(1) << 30);
+    constexpr std::uint32_t kNotes = 400'000;
+    CacheView const view = cache.lend(kNotes);
+    std::vector<PathSample> samples(1);
+    samples[0].radiance[2] = vec3{2, 4, 8};
+    Buffer<PathSample, S> const there = upload<S>(samples);
+    std::vector<std::uint32_t> words(3 * std::size_t(kNotes) * (sizeof(CacheNoteOnWay) / 4));
+    ColumnView<CacheNoteOnWay> const on_host{words, 3 * std::size_t(kNotes)};
+    auto const key_of = [](std::uint64_t k) { return mix_bits(k / 2) | 1; }; // two notes each
+    for (std::uint32_t k = 0; k < kNotes; ++k) {
+        CacheNoteOnWay note{};
+        note.set_key(0, key_of(k));
+        note.throughput = vec3{2};
+        note.before = vec3{0, 0, k % 2 == 0 ? 0.0f : 4.0f};
+        note.weight = 0.5f;
+        note.directional = k >= kNotes - 2 ? 1 : 0;
+        on_host.store(k, note);
+    }
+    copy_bytes(S, view.notes.words.data, Space::host, words.data(), words.size() * sizeof(std::uint32_t));
+    std::uint32_t const count = kNotes;
+    copy_bytes(S, view.count.data, Space::host, &count, sizeof(count));
+    EXPECT_TRUE(cache.empty());
+    cache.learn(there.view());
+    EXPECT_FALSE(cache.empty());
+    std::size_t const bytes = cache.bytes();
+    cache.grow();
+    EXPECT_EQ(cache.cells(), kNotes / 2);
+    EXPECT_EQ(cache.refused(), 0u);
+    EXPECT_GT(cache.bytes(), bytes);
+    CacheView after = cache.lend(kNotes);
+    std::vector<CacheCell> cells(after.cells.size());
+    copy_bytes(Space::host, cells.data(), S, after.cells.data, cells.size() * sizeof(CacheCell));
+    after.cells = cells;
+    for (std::uint32_t k = 0; k < kNotes; k += 1000) {
+        CellSums const sums = after.sums_of(key_of(k));
+        ASSERT_EQ(sums.notes, 2);
+        EXPECT_NEAR(sums.weight, 1, 1e-5);
+        EXPECT_NEAR(sums.radiance.x, 1, 1e-4);
+        EXPECT_NEAR(sums.radiance.z, 3, 1e-4); // (8 + 4) / 2 over two
+    }
+    EXPECT_LT(after.sums_of(key_of(kNotes - 1)).notes, 0);
+    EXPECT_EQ(after.sums_of(key_of(kNotes + 1)).notes, 0);
+    cache.clear();
+    EXPECT_TRUE(cache.empty());
+}
+LIGHTWELL_TEST_BOTH(KernelPaths, CellsGrowAndKeepTheirSums, check_cells_that_grow);
 
 TEST(KernelPaths, ThePoolChoosesTheSameLights)
 {

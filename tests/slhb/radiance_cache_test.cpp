@@ -106,7 +106,7 @@ TEST(RadianceCache, SaysTheWeightedMeanOfItsNotes)
     }
     notes[0].push_back({taught, vec3{std::nanf("")}, 1}); // counts for nothing
     cache.learn(notes);
-    RadianceCache::CachedRadiance const known = cache.find(keys);
+    CachedRadiance const known = cache.find(keys);
     EXPECT_LT(known.go_on, 0.3f);
     EXPECT_GT(known.go_on, 0);
     EXPECT_NEAR(known.radiance.x, 3, 1e-5f);

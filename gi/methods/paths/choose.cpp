@@ -150,7 +150,8 @@ double expected_passes(RenderSettings const& asked, Costs const& c)
 RadianceCaching choose_cache(RenderSettings const& asked, bool lasting)
 {
     RadianceCaching const cache = asked.of<PathsSettings>().cache;
-    bool const none = asked.bounces == 0 || asked.of<SlhbSettings>().exact.any() || asked.space == Space::device;
+    bool const none = asked.bounces == 0 || asked.of<SlhbSettings>().exact.any() ||
+                      (asked.space == Space::device && asked.of<PathAlgorithm>().surfaces != SurfacesBy::rays);
     if (none) return RadianceCaching::off;
     if (cache != RadianceCaching::automatic) return cache;
     if (!asked.of<PathAlgorithm>().caches) return lasting ? RadianceCaching::automatic : RadianceCaching::off;

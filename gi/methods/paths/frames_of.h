@@ -86,16 +86,15 @@ public:
         PassLoop loop(settings_, stop, progress, report_, moments ? std::exchange(start_s_, 0) : 0);
         see(full_size(camera));
         double const earlier = renderer_->rays();
-        if constexpr (!kByKernels)
-            if (!(settings_.budget_s > 0))
-                renderer_->forget(); // with fixed paths, frames must not depend on earlier ones
+        if (!(settings_.budget_s > 0))
+            renderer_->forget(); // with fixed paths, frames must not depend on earlier ones
         VertexSharing const sharing =
             settings_.of<PathsSettings>().cache == RadianceCaching::on ? VertexSharing::cached : VertexSharing::exact;
         RenderResult result = loop.run(0, [&](Accumulator& sums, std::uint32_t paths) {
             if constexpr (kByKernels)
                 if (!moments) {
                     std::uint32_t const before = sums.paths;
-                    renderer_->passes(passes_, paths, {&sums, 1}, &stop);
+                    renderer_->passes(passes_, paths, {&sums, 1}, sharing, &stop);
                     passes_ += sums.paths - before;
                     return;
                 }
@@ -133,7 +132,7 @@ public:
             earlier = renderer_->rays(); // it may be a new renderer
             if constexpr (!kByKernels) renderer_->leave_out_punctual(leaves_out_punctual_);
             if constexpr (kByKernels)
-                passes_of_views(paths, stop);
+                passes_of_views(paths, sharing, stop);
             else
                 for (std::uint32_t i = 0; i < paths && !(i > 0 && stop.requested()); ++i)
                     pass_of_views(sharing, nullptr);
@@ -171,9 +170,9 @@ private:
                    [&] { renderer_->pass(passes_++, sums_, sharing, PassStop(stop, PassStop::Pass::later)); });
     }
     /// By kernels: the sums stay where these run until all passes are done.
-    void passes_of_views(std::uint32_t paths, StopRequest const& stop)
+    void passes_of_views(std::uint32_t paths, VertexSharing sharing, StopRequest const& stop)
     {
-        on_threads(settings_.threads, [&] { renderer_->passes(passes_, paths, sums_, &stop); });
+        on_threads(settings_.threads, [&] { renderer_->passes(passes_, paths, sums_, sharing, &stop); });
         passes_ += sums_[0].paths;
     }
 
@@ -333,11 +332,9 @@ private:
         renderer_->end_frame();
         report_.lose("layers beyond the limit of a texel", renderer_->lost_layers() - lost_);
         lost_ = renderer_->lost_layers();
-        if constexpr (!kByKernels) {
-            report_.lose("radiance samples for which the radiance cache had no room",
-                         renderer_->refused_notes() - refused_);
-            refused_ = renderer_->refused_notes();
-        }
+        report_.lose("radiance samples for which the radiance cache had no room",
+                     renderer_->refused_notes() - refused_);
+        refused_ = renderer_->refused_notes();
     }
 
     void start(std::span<FrameView const> views)

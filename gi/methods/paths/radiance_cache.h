@@ -10,22 +10,13 @@
 // surfaces is blurred over a cell, which may extend through a thin wall, and pixels share the noise of a cell. So
 // the cache is meant for pictures with a budget. Readable cells get narrower with the number of passes.
 
-#include "gi/scene/model/world.h"
-#include "gi/scene/shading/narrow_lobes.h"
+#include "gi/methods/paths/cache_cells.h"
 
 #include <array>
 #include <span>
 #include <vector>
 
 namespace gi {
-
-/// The cells that contain a point where a path can end: from the widest, each half as wide as the one before.
-struct CacheKeys {
-    static constexpr std::size_t kLevels = 4;
-    std::array<std::uint64_t, kLevels> level{}; ///< 0 = none
-
-    bool any() const { return level[0] != 0; }
-};
 
 /// Outgoing radiance found by a path that continued.
 struct CacheNote {
@@ -35,33 +26,18 @@ struct CacheNote {
     bool directional = false; ///< see is_directional: no path may end in these cells
 };
 
-/// True if outgoing light depends so much on direction that paths cannot share it: mirrors, glass, and narrow
-/// lobes except the weak one of a coat.
-inline bool is_directional(Bsdf const& b)
-{
-    constexpr float kWeak = 0.1f;
-    if (b.clear > 0 || (b.f90.x > 0 && b.alpha < kSmoothAlpha)) return true;
-    return has_narrow_lobe(b) && max_component(b.model == MaterialModel::phong ? b.phong_specular : b.f0) > kWeak;
-}
-
 class RadianceCache {
 public:
     /// @param radius  of the world, m  @param most_bytes  memory limit; notes without a cell are counted
     RadianceCache(float radius, std::size_t most_bytes);
 
-    /// Returns equal keys for points on the same material and the same side of triangles, with similar
-    /// orientation, in the same cell. Empty if floats are too coarse for cells this narrow.
-    /// @param footprint  width of the bundle that the path represents, m  @param arrival  direction of the path
-    /// @param further  number of scatterings that may follow, >= 0
-    CacheKeys keys(Surface const& surface, vec3 position, vec3 arrival, float footprint, int further) const;
+    /// See cell_keys.
+    CacheKeys keys(Surface const& surface, vec3 position, vec3 arrival, float footprint, int further) const
+    {
+        return cell_keys(surface, shift_, position, arrival, footprint, further);
+    }
     void prefetch(CacheKeys const& keys) const;
 
-    /// Known outgoing radiance at a point.
-    struct CachedRadiance {
-        vec3 radiance{0};
-        float go_on = 1;          ///< probability that a path continues anyway, to teach; 1 = nothing known
-        std::size_t to_teach = 1; ///< number of levels to teach, from the widest
-    };
     CachedRadiance find(CacheKeys const& keys) const;
 
     /// Adds notes to cells. The order of notes affects the last bits, the number of threads does not.
@@ -81,11 +57,7 @@ public:
 private:
     struct Cell {
         std::uint64_t key = 0;
-        vec3 sum{0};                 ///< of weight times radiance
-        float weight = 0, notes = 0; ///< notes < 0: no path may end here
-        float squares = 0;           ///< sum of (weight times luminance)^2
-
-        float deviation() const; ///< relative standard deviation of weight times luminance
+        CellSums sums;
     };
     /// Hash table of the keys with the same first bits: open addressing, power-of-two size.
     struct Shard {
@@ -101,12 +73,11 @@ private:
     static constexpr std::size_t kShards = 16; ///< updated independently of each other
     static std::size_t shard_of(std::uint64_t key) { return std::size_t(key >> 60); }
     Shard const& shard(std::uint64_t key) const { return shards_[shard_of(key)]; }
-    std::size_t least_level() const;
 
     std::array<Shard, kShards> shards_;
     std::size_t most_cells_; ///< per shard
     std::uint32_t passes_ = 0;
-    vec3 shift_; ///< m, so that axis-aligned walls do not coincide with cell borders
+    vec3 shift_; ///< see cell_shift
 };
 
 } // namespace gi

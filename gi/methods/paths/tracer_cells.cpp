@@ -42,7 +42,7 @@ void PathsTracer::end_in_cells(Pass const& pass, std::span<State> states, std::v
         if (keys[k].any()) {
             std::uint32_t const path = vertices[k].path;
             State& s = states[path];
-            RadianceCache::CachedRadiance const known = pass.cache->find(keys[k]);
+            CachedRadiance const known = pass.cache->find(keys[k]);
             if (!(s.random.noise2(s.dimension(PathDimension::cache)).x < known.go_on)) {
                 layer_of(*s.sample, 2) += s.throughput * known.radiance;
                 ++counts.cache_reads;

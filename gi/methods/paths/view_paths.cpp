@@ -6,7 +6,6 @@
 #include "gi/render/ray_path.h"
 
 #include <algorithm>
-#include <bit>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -16,7 +15,7 @@ namespace {
 /// Pixels whose paths advance together on one thread.
 constexpr std::size_t kBlock = 4096;
 /// The same for few paths, and with exact rays, where only paths and no buffers have to stay in the cache.
-constexpr std::size_t kSmallBlock = 256;
+constexpr std::size_t kSmallBlock = kPixelsOfTurn;
 
 /// First surfaces of pixels first..last - 1 by exact rays, each path through its
 /// own sample point on pixel and lens.
@@ -42,9 +41,6 @@ void exact_hits(PathsTracer::Pass const& pass, SeenView const& view, RenderSetti
     pass.exact->nearest(rays, hits);
     for (std::size_t k = 0; k < hits.size(); ++k) out[k].triangle = hits[k].triangle;
 }
-
-/// Returns the turn (of five) of a block of pixels: of sixteen blocks, 1, 1, 2, 4 and 8 have turns 0 to 4.
-std::uint32_t turn_of(std::size_t block) { return std::uint32_t(std::bit_width((block * 7) & 15)); }
 
 } // namespace
 

@@ -30,7 +30,12 @@ std::vector<std::size_t> integers();
 template <>
 std::vector<std::size_t> integers<PathOnWay>()
 {
-    return {4, 5, 6, 7};
+    return {4, 6, 7, 8};
+}
+template <>
+std::vector<std::size_t> integers<Hit>()
+{
+    return {0};
 }
 template <>
 std::vector<std::size_t> integers<WaitingLight>()
@@ -194,6 +199,7 @@ private:
 struct StepOfPaths {
     Items<PathOnWay> paths;
     Items<RayQuery> queries;
+    Items<Hit> hits;
     std::uint32_t count = 0;
     Items<WaitingLight> waiting;
     std::uint32_t waits = 0;
@@ -203,8 +209,9 @@ struct StepOfPaths {
 template <Space S>
 StepOfPaths step_of(typename KernelScene<S>::AfterStep const& now)
 {
-    return {taken_from(now.paths),   taken_from(now.queries),     download(now.count).front(),
-            taken_from(now.waiting), download(now.waits).front(), download(now.samples)};
+    return {taken_from(now.paths),       taken_from(now.queries), taken_from(now.hits),
+            download(now.count).front(), taken_from(now.waiting), download(now.waits).front(),
+            download(now.samples)};
 }
 
 /// Compares items of pixels, in whatever order they are. @param rest  (host's item, device's) -> compares more
@@ -232,13 +239,16 @@ void compare_items(std::string const& name, std::size_t step, Items<T> const& ho
 void compare(std::string const& method, StepOfPaths const& host, StepOfPaths const& device, std::size_t number,
              Differences& to)
 {
-    for (std::size_t p = 0; p < host.samples.size() && number > 0; ++p) // rays of the camera leave none
+    bool const of_camera = host.count > 0 && host.paths.at(0).vertex == 0; // its rays leave hits and no light
+    for (std::size_t p = 0; p < host.samples.size() && !of_camera; ++p)
         to.compare(method + ", light", fmt::format("step {}, pixel {}", number, p), host.samples[p],
                    device.samples[p]);
     compare_items(method + ", paths", number, host.paths, host.count, device.paths, device.count, to,
                   [&](std::string const& where, std::size_t k, std::size_t j) {
                       if (host.queries.count > 0)
                           to.compare(method + ", rays", where, host.queries.at(k), device.queries.at(j));
+                      if (of_camera)
+                          to.compare(method + ", first hits", where, host.hits.at(k), device.hits.at(j));
                   });
     compare_items(method + ", light of samples", number, host.waiting, host.waits, device.waiting, device.waits,
                   to, [](std::string const&, std::size_t, std::size_t) {});
@@ -273,7 +283,7 @@ void check_paths(std::string const& method, PathAlgorithm by, World const& world
         StepOfPaths const& host = steps.at(number);
         compare(method, host, step_of<Space::device>(now), number, to);
         put(host.paths, now.paths); // so that both take the next step from the same state
-        if (host.queries.count > 0) put(host.queries, now.queries);
+        if (host.queries.count > 0) put(host.queries, now.queries), put(host.hits, now.hits);
         put(std::vector<std::uint32_t>{host.count}, now.count);
         put(host.waiting, now.waiting);
         put(std::vector<std::uint32_t>{host.waits}, now.waits);

@@ -27,11 +27,14 @@ RenderResult render(char const* name, World const& world, Camera const& camera, 
                                free ? FirstSurfaces::by_rays : FirstSurfaces::by_raster);
     std::string const options = as_options(chosen) + renderer.level_option();
     std::uint64_t const print = loop.keeps_state() ? fingerprint(world, camera, chosen, name, options) : 0;
+    bool const cached = chosen.of<PathsSettings>().cache == RadianceCaching::on;
     RenderResult result = loop.run(print, [&](Accumulator& sums, std::uint32_t paths) {
-        renderer.passes(loop.next_path(), paths, {&sums, 1}, &stop);
+        renderer.passes(loop.next_path(), paths, {&sums, 1}, cached ? VertexSharing::cached : VertexSharing::none,
+                        &stop);
     });
     renderer.report_work();
     report.lose("layers beyond the limit of a texel", renderer.lost_layers());
+    report.lose("radiance samples for which the radiance cache had no room", renderer.refused_notes());
     result.rays = renderer.rays();
     result.options = options;
     loop.deliver(world, result);

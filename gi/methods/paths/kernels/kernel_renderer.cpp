@@ -24,9 +24,9 @@ void KernelRenderer<S>::check(Camera const& camera, RenderSettings const& settin
     if (own.interleave > 1)
         throw InputError("--device cuda with --interleave", "its kernels compute indirect light in all pixels",
                          suggestion);
-    if (own.cache == RadianceCaching::on)
-        throw InputError("--device cuda with --radiance-cache on", "its kernels do not end paths in a cache",
-                         suggestion);
+    if (own.cache == RadianceCaching::on && settings.of<PathAlgorithm>().surfaces != SurfacesBy::rays)
+        throw InputError("--method slhb --device cuda with --radiance-cache on",
+                         "the kernels of slhb do not end paths in a cache", suggestion);
     if (s.gather) throw InputError("--device cuda with --gather", "its kernels choose axes at random", suggestion);
 }
 
@@ -47,6 +47,8 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     build_exact();
     make_axes();
     make_light_points();
+    if (free() && settings_.of<PathsSettings>().cache != RadianceCaching::off && settings_.bounces > 0)
+        scene_.use_cache(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
 }
 
 template <Space S>
@@ -96,6 +98,8 @@ void KernelRenderer<S>::make_light_points()
 template <Space S>
 void KernelRenderer<S>::changed(Changes const& c)
 {
+    if (c.geometry || c.materials || c.coverage || c.lights || c.emitters || c.environment || c.light_select)
+        forget();
     {
         StageTimer const timer(report_, "update of dynamic triangles");
         if (c.geometry) traced_.move(world_);
@@ -174,25 +178,28 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
 
 template <Space S>
 void KernelRenderer<S>::passes(std::uint32_t index, std::uint32_t count, std::span<Accumulator> sums,
-                               StopRequest const* stop)
+                               VertexSharing sharing, StopRequest const* stop)
 {
     for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.take(sums[k]);
-    for (std::uint32_t i = 0; i < count && !(i > 0 && stop && stop->requested()); ++i) add_pass(index + i, sums);
+    for (std::uint32_t i = 0; i < count && !(i > 0 && stop && stop->requested()); ++i)
+        add_pass(index + i, sums, sharing == VertexSharing::cached);
     StageTimer const timer(report_, "paths");
     PathKernelCounts const done = scene_.take_counts();
+    if (scene_.cache() != nullptr) scene_.cache()->grow();
     sums[0].counts.cut_paths += done.cut_paths; // of all views, which are reported together
     sums[0].counts.invalid_paths += done.invalid_paths;
     queries_ += done.queries;
     exact_rays_ += done.exact_rays;
     shadow_lookups_ += done.shadow_lookups;
     shadow_rays_ += done.shadow_rays;
+    cache_reads_ += done.cache_reads;
     doubtful_queries_ += done.doubtful_queries;
     doubtful_shadows_ += done.doubtful_shadows;
     for (std::size_t k = 0; k < views_.size(); ++k) views_[k].sums.give(sums[k], sums[k].paths);
 }
 
 template <Space S>
-void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sums)
+void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sums, bool cached)
 {
     prepare(index);
     StageTimer const timer(report_, "paths");
@@ -217,11 +224,12 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         paths.roulette = settings_.of<PathsSettings>().roulette;
         paths.seed = random_key(settings_.seed);
         paths.pass = index;
-        v.sums.add(scene_.trace(paths, free()));
+        v.sums.add(scene_.trace(paths, free(), cached));
         ++to.paths;
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
     }
+    if (scene_.cache() != nullptr) scene_.cache()->end_pass();
     finish(S);
 }
 
@@ -236,11 +244,16 @@ void KernelRenderer<S>::add_motion(std::size_t view, Picture& picture) const
 }
 
 template <Space S>
-void KernelRenderer<S>::report_work() const
+void KernelRenderer<S>::report_work()
 {
     report_.count("exact rays", double(exact_rays_));
     if (free()) {
         report_.count("shadow rays", double(shadow_rays_));
+        if (scene_.cache() != nullptr) {
+            report_.count("paths that ended in the radiance cache", double(cache_reads_));
+            report_.count("cells of the radiance cache", double(scene_.cache()->cells()));
+            report_.count("bytes of the radiance cache", double(scene_.cache()->bytes()));
+        }
     } else {
         report_.count("hit-buffer queries", double(queries_));
         report_.count("shadow-map look-ups", double(shadow_lookups_));

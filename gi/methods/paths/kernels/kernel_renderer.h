@@ -41,13 +41,20 @@ public:
     DynamicUpdate dynamic_update() const { return axes_.dynamic_update(); }
     /// Throws InputError on orthographic cameras.
     void see(std::span<FrameView const> views);
-    /// VertexSharing is ignored: paths do not share vertices.
-    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing = VertexSharing::none)
+    /// Paths do not share vertices, and end in cells if the method is paths.
+    void pass(std::uint32_t index, std::span<Accumulator> sums, VertexSharing sharing = VertexSharing::none)
     {
-        passes(index, 1, sums, nullptr);
+        passes(index, 1, sums, sharing, nullptr);
     }
     /// Several passes, while the sums stay in the space. @param stop  ends them after a pass; null = never
-    void passes(std::uint32_t index, std::uint32_t count, std::span<Accumulator> sums, StopRequest const* stop);
+    void passes(std::uint32_t index, std::uint32_t count, std::span<Accumulator> sums, VertexSharing sharing,
+                StopRequest const* stop);
+    /// See PathsRenderer.
+    void forget()
+    {
+        if (scene_.cache() != nullptr) scene_.cache()->clear();
+    }
+    std::uint64_t refused_notes() { return scene_.cache() != nullptr ? scene_.cache()->refused() : 0; }
     void add_motion(std::size_t view, Picture& picture) const;
     /// Empty: no light is reused from a partner.
     std::span<std::uint32_t const> light_from(std::size_t) const { return {}; }
@@ -58,7 +65,7 @@ public:
     /// See Windows::option().
     std::string level_option() const { return traced_.windows.option(); }
     std::uint64_t lost_layers() const { return axes_.lost(); }
-    void report_work() const;
+    void report_work();
     KernelScene<S>& scene() { return scene_; }
 
 private:
@@ -77,7 +84,7 @@ private:
     void make_axes();
     void make_light_points();
     void prepare(std::uint32_t index);
-    void add_pass(std::uint32_t index, std::span<Accumulator> sums);
+    void add_pass(std::uint32_t index, std::span<Accumulator> sums, bool cached);
 
     World const& world_;
     RenderSettings settings_;
@@ -91,8 +98,8 @@ private:
     FirstSurfaces first_surfaces_;
     LightOrder light_order_; ///< of paths, like the following
     LightPool lights_;
-    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0, shadow_rays_ = 0, doubtful_queries_ = 0,
-                  doubtful_shadows_ = 0;
+    std::uint64_t queries_ = 0, exact_rays_ = 0, shadow_lookups_ = 0, shadow_rays_ = 0, cache_reads_ = 0,
+                  doubtful_queries_ = 0, doubtful_shadows_ = 0;
     /// Pixels not traced because they are hidden; all pixels; over all passes.
     std::uint64_t hidden_ = 0, pixels_ = 0;
     std::uint64_t earlier_maps_ = 0;        ///< built for earlier light points that no longer exist

@@ -5,6 +5,7 @@
 #include "gi/hit_buffers/build_hit_buffer.h"
 #include "gi/hit_buffers/directions/axis_set.h"
 #include "gi/hit_buffers/shadow_maps/light_points.h"
+#include "gi/methods/paths/kernels/kernel_cache.h"
 #include "gi/methods/paths/kernels/path_kernel.h"
 #include "gi/raster/draw_nearest.h"
 #include "gi/scene/model/used_materials.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -141,6 +143,10 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
+    /// @param radius, most_bytes  see KernelCache
+    void use_cache(float radius, std::size_t most_bytes) { cache_.emplace(radius, most_bytes); }
+    KernelCache<S>* cache() { return cache_ ? &*cache_ : nullptr; }
+
     /// Sets the light samples of a pass.
     void take_pool(LightPool const& pool)
     {
@@ -150,9 +156,9 @@ public:
     }
 
     /// Traces a path a pixel. Returns a sample for each, valid until the next call.
-    /// @param free  by exact rays alone, see FindBy
+    /// @param free  by exact rays alone, see FindBy  @param cached  paths may end in the cells of use_cache()
     /// @param paths  with the host's parameters and those of the view; this function fills in the rest
-    View<PathSample const> trace(PassOfPaths paths, bool free)
+    View<PathSample const> trace(PassOfPaths paths, bool free, bool cached)
     {
         std::size_t const pixels = paths.pixels;
         if (samples_.size() != pixels) samples_ = Buffer<PathSample, S>(pixels);
@@ -165,7 +171,7 @@ public:
         paths.pool = pool_;
         paths.samples = samples_.view();
         paths.counts = counts_.view();
-        std::size_t const most = std::min(pixels, kMostOnWay);
+        std::size_t const most = std::min(pixels + kPixelsOfTurn, kMostOnWay);
         if (on_way_[0].size() != most || on_way_[0].has_rays() != bvh_.has_value())
             for (OnWay& w : on_way_) {
                 w = {}; // first, as both together may be too much
@@ -173,12 +179,14 @@ public:
             }
         if (std::size_t const waiting = paths.confirms || free ? most : 0; waiting_.size() != waiting)
             waiting_ = ColumnBuffer<WaitingLight, S>(waiting);
-        if (free)
-            trace_all<FindBy::rays>(paths);
+        if (free && cached && cache_)
+            trace_to_cells(paths);
+        else if (free)
+            trace_all<FindBy::rays>(paths, 0, pixels);
         else if (bvh_)
-            trace_all<FindBy::look_ups_and_rays>(paths);
+            trace_all<FindBy::look_ups_and_rays>(paths, 0, pixels);
         else
-            trace_all<FindBy::look_ups>(paths);
+            trace_all<FindBy::look_ups>(paths, 0, pixels);
         return std::as_const(samples_).view();
     }
     /// Of the paths traced since the last call.
@@ -194,6 +202,7 @@ public:
     struct AfterStep {
         ColumnBuffer<PathOnWay, S>& paths; ///< that go on
         ColumnBuffer<RayQuery, S>& queries;
+        ColumnBuffer<Hit, S>& hits;      ///< of queries, after rays of the camera
         Buffer<std::uint32_t, S>& count; ///< [0]: of paths
         ColumnBuffer<WaitingLight, S>& waiting;
         Buffer<std::uint32_t, S>& waits; ///< [0]: number of waiting lights
@@ -204,21 +213,45 @@ public:
 private:
     void forget_counts() { fill_bytes(S, counts_.view().data, 0, counts_.size() * sizeof(PathKernelCounts)); }
 
+    /// Paths that may end in cells, and teach them. An empty cache is taught in turns.
+    void trace_to_cells(PassOfPaths& paths)
+    {
+        std::size_t const blocks = (paths.pixels + kPixelsOfTurn - 1) / kPixelsOfTurn;
+        bool const by_turns = cache_->empty();
+        std::array<std::size_t, kCacheTurns + 1> first{};
+        if (by_turns) {
+            std::vector<std::uint32_t> order(blocks);
+            std::iota(order.begin(), order.end(), 0u);
+            std::ranges::stable_sort(order, {}, [](std::uint32_t b) { return turn_of(b); });
+            for (std::uint32_t const b : order) first[turn_of(b) + 1] += kPixelsOfTurn;
+            std::partial_sum(first.begin(), first.end(), first.begin());
+            blocks_ = upload<S>(order);
+            paths.blocks = std::as_const(blocks_).view();
+        } else {
+            first[1] = paths.pixels;
+        }
+        for (std::size_t turn = 0; turn < (by_turns ? kCacheTurns : 1); ++turn) {
+            paths.cache = cache_->lend(paths.pixels);
+            trace_all<FindBy::rays>(paths, first[turn], first[turn + 1]);
+            cache_->learn(std::as_const(samples_).view());
+        }
+    }
+
     /// All paths one surface further, again and again, and the last few to their ends. How many go on from the first
     /// surfaces is not asked, as the host would wait for the answer.
     template <FindBy by>
-    void trace_all(PassOfPaths& paths)
+    void trace_all(PassOfPaths& paths, std::size_t first, std::size_t last)
     {
         constexpr bool by_rays = by != FindBy::look_ups;
         bool const from_camera = by == FindBy::rays && paths.primary.empty();
         KernelRays const rays = by_rays ? bvh_->rays() : KernelRays{};
-        for (paths.first = 0; paths.first < paths.samples.size(); paths.first += kMostOnWay) {
-            std::size_t const all = std::min(paths.samples.size() - paths.first, kMostOnWay);
+        for (paths.first = first; paths.first < last; paths.first += kMostOnWay) {
+            std::size_t const all = std::min(last - paths.first, kMostOnWay);
             std::size_t const few = std::min(all / 8, kFewOnWay);
             paths.next = on_way_[0].none();
             paths.waiting = none_waiting();
             if (from_camera)
-                launch(S, "rays of the camera", all, StartRays{{paths}});
+                launch(S, "rays of the camera", all, StartRays{{paths}, rays, on_way_[0].hits()});
             else
                 launch(S, "first steps of paths", all, FirstSteps<by>{{paths}});
             if (after_step) after_step(left(0));
@@ -226,7 +259,7 @@ private:
             int now = 0;
             for (int surface = from_camera ? 0 : 1;; ++surface, now = 1 - now) {
                 std::size_t const n = surface < std::min(paths.bounces, kSure) ? all : on_way_[now].count();
-                if (by_rays) trace_rays(now, n, waiting_.size() > 0 ? waits : 0, paths);
+                if (by_rays && surface > 0) trace_rays(now, n, waiting_.size() > 0 ? waits : 0, paths);
                 if (n == 0) break;
                 PathsOnWay const from = paths.next;
                 ColumnView<Hit> const hits = on_way_[now].hits();
@@ -284,7 +317,7 @@ private:
         AfterStep left(ColumnBuffer<WaitingLight, S>& waiting, Buffer<std::uint32_t, S>& waits,
                        Buffer<PathSample, S>& samples)
         {
-            return {paths_, queries_, count_, waiting, waits, samples};
+            return {paths_, queries_, hits_, count_, waiting, waits, samples};
         }
         PathsOnWay none()
         {
@@ -361,6 +394,8 @@ private:
     Buffer<LightGroup, S> pool_groups_;
     Buffer<PooledLight, S> pool_lights_;
     LightPoolView pool_;
+    std::optional<KernelCache<S>> cache_;
+    Buffer<std::uint32_t, S> blocks_; ///< see PassOfPaths
     Buffer<PathSample, S> samples_;
     OnWay on_way_[2];
     ColumnBuffer<WaitingLight, S> waiting_; ///< empty if no exact rays decide

@@ -5,12 +5,13 @@
 // so that both trace the same paths up to rounding.
 //
 // Exact rays through the project's own BVH are traced by a kernel of their own (RaysOfSteps): all of paths, those of
-// mirrors, glass and narrow lobes of slhb, and what is doubtful there. Cone, gathering, interleaving, shared vertices
-// and the radiance cache are not supported.
+// mirrors, glass and narrow lobes of slhb, and what is doubtful there. Cone, gathering, interleaving, shared vertices,
+// and the radiance cache for slhb are not supported.
 
 #include "gi/hit_buffers/axis_step.h"
 #include "gi/hit_buffers/shadow_maps/shadow_look.h"
 #include "gi/kernel/atomics.h"
+#include "gi/methods/paths/kernels/cache_kernels.h"
 #include "gi/methods/paths/light_pool.h"
 #include "gi/render/path_random.h"
 #include "gi/render/ray_kernels.h"
@@ -28,7 +29,7 @@ struct LightPointView {
 };
 
 struct PathKernelCounts {
-    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0;
+    std::uint64_t queries = 0, exact_rays = 0, shadow_lookups = 0, shadow_rays = 0, cache_reads = 0;
     std::uint64_t doubtful_queries = 0, doubtful_shadows = 0; ///< of these look-ups, decided by exact rays
     std::uint64_t cut_paths = 0, invalid_paths = 0;
 
@@ -38,6 +39,7 @@ struct PathKernelCounts {
         exact_rays += o.exact_rays;
         shadow_lookups += o.shadow_lookups;
         shadow_rays += o.shadow_rays;
+        cache_reads += o.cache_reads;
         doubtful_queries += o.doubtful_queries;
         doubtful_shadows += o.doubtful_shadows;
         cut_paths += o.cut_paths;
@@ -49,6 +51,7 @@ struct PathKernelCounts {
 /// A path between two surfaces, and the next one if a look-up found it.
 struct PathOnWay {
     PathState state;
+    float footprint; ///< approximate width of the bundle of paths that this one represents, m
     std::uint32_t pixel;
     int vertex; ///< as in StepPaths::State, like the following
     std::uint32_t triangle;
@@ -92,17 +95,27 @@ struct PassOfPaths {
     View<LightPointView const> light_points;
     AliasTableView chances; ///< of the light points; empty = equal
     LightPoolView pool;     ///< in place of light points
+    CacheView cache;        ///< in whose cells paths by rays may end
     int bounces;
     float roulette; ///< see SlhbSettings
     bool smooth;    ///< the world contains a mirror or glass
     bool meets_light; ///< paths can hit light: a sky or emissive surfaces
     bool confirms;  ///< exact rays decide where look-ups and shadow maps are doubtful
     std::uint32_t seed, pass;
-    std::size_t first;             ///< pixel of the first item of FirstSteps or StartRays
+    std::size_t first; ///< of FirstSteps or StartRays: what is before their first item, see pixel_of
+    View<std::uint32_t const>
+        blocks;                    ///< of kPixelsOfTurn pixels, in the order of their turns; empty = as they are
     View<PathSample> samples;      ///< per pixel
     PathsOnWay next;               ///< to which paths are added
     WaitingLights waiting;         ///< to which their light is added
     View<PathKernelCounts> counts; ///< to be added up
+
+    /// May be beyond the last pixel.
+    GI_FN std::size_t pixel_of(std::size_t item) const
+    {
+        std::size_t const at = first + item;
+        return blocks.empty() ? at : blocks[at / kPixelsOfTurn] * kPixelsOfTurn + at % kPixelsOfTurn;
+    }
 };
 
 /// How paths find surfaces and whether light samples are visible.
@@ -118,6 +131,7 @@ struct StepPaths : PassOfPaths {
     static constexpr bool by_rays = by != FindBy::look_ups, free = by == FindBy::rays;
 
 protected:
+    static constexpr std::uint32_t kNoNote = 0xffffffffu;
     /// State of one path.
     struct State : PathState {
         RqmcStream random;
@@ -127,6 +141,8 @@ protected:
         bool has_position = false;   ///< found by a look-up, which gives the point instead of weights
         vec3 direction{0};           ///< of arrival
         float distance = 0;          ///< m, from the last surface
+        float footprint = 0;         ///< as in PathOnWay
+        std::uint32_t note = kNoNote; ///< index of the note about its surface
         int vertex = 0;              ///< number of surfaces before, delta lobes included
         RayQuery query = no_query(); ///< the exact ray that the path needs now
         WaitingLight waiting{
@@ -139,6 +155,10 @@ protected:
     GI_FN State start(std::size_t pixel) const;
     /// What the exact ray of the path found.
     GI_FN static void meet(State& s, Hit const& hit);
+    /// True if the path ends in the cell of its surface, whose light is added; else it may have a note to teach it.
+    /// @param indirect  light of the path so far, more than once scattered
+    GI_FN bool ends_in_cell(State& s, std::size_t pixel, vec3 indirect, PathSample& out) const;
+    GI_FN CacheKeys keys_of(State const& s) const;
     /// From one surface to the next. Returns false if the path ends.
     GI_FN bool step(State& s, PathSample& out, PathKernelCounts& local) const;
     GI_FN vec3 sky(State const& s) const;
@@ -149,7 +169,8 @@ protected:
     GI_FN RayQuery shadow_query(State const& s, ShadingPoint const& at, LightSample const& light) const;
     /// Keeps the light that waits for its shadow ray.
     GI_FN void wait(std::size_t pixel, State const& s) const;
-    GI_FN void go_on(std::size_t pixel, State const& s) const;
+    /// Returns its place in `next`.
+    GI_FN std::uint32_t go_on(std::size_t pixel, State const& s) const;
     /// Continues the path to the next surface. Returns false if it ends.
     GI_FN bool scatter(State& s, ShadingPoint const& at, vec3 wo, bool narrow, PathKernelCounts& local) const;
     /// As scatter(), through a mirror, glass or a narrow lobe, by an exact ray.
@@ -205,12 +226,15 @@ struct RaysOfSteps {
     }
 };
 
-/// Rays of the camera, each through its own place in the pixel and on the lens. Item = pixel, from `first` on.
+/// Rays of the camera to first surfaces, each through its own place in the pixel and on the lens. Item: see pixel_of.
 struct StartRays : StepPaths<FindBy::rays> {
+    KernelRays rays;
+    ColumnView<Hit> hits; ///< of next.queries
+
     GI_FN void operator()(std::size_t i) const;
 };
 
-/// First step. Item = pixel, from `first` on.
+/// First step. Item: see pixel_of.
 template <FindBy by>
 struct FirstSteps : StepPaths<by> {
     GI_FN void operator()(std::size_t i) const;

@@ -3,6 +3,8 @@
 
 #include "gi/render/path_random.h"
 
+#include <cstddef>
+
 namespace gi {
 
 template <FindBy by>
@@ -221,6 +223,7 @@ GI_FN void StepPaths<by>::add_counts(std::size_t item, PathKernelCounts const& l
     more(all.exact_rays, local.exact_rays);
     more(all.shadow_lookups, local.shadow_lookups);
     more(all.shadow_rays, local.shadow_rays);
+    more(all.cache_reads, local.cache_reads);
     more(all.doubtful_queries, local.doubtful_queries);
     more(all.doubtful_shadows, local.doubtful_shadows);
     more(all.cut_paths, local.cut_paths);
@@ -240,6 +243,8 @@ GI_FN bool StepPaths<by>::step(State& s, PathSample& out, PathKernelCounts& loca
     ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
     if (s.vertex == 0) see_first_surface(out, at, camera);
+    if (free && s.note < cache.notes.count && is_directional(at.bsdf))
+        cache.notes.set_word(s.note, offsetof(CacheNoteOnWay, directional) / sizeof(std::uint32_t), 1);
     add_light(out, s.scatterings, emission(s, at));
     if (!by_rays && is_last(s)) return false;
     if (s.vertex == kLongestPath) {
@@ -271,10 +276,51 @@ GI_FN void StepPaths<by>::meet(State& s, Hit const& hit)
 }
 
 template <FindBy by>
-GI_FN void StepPaths<by>::go_on(std::size_t pixel, State const& s) const
+GI_FN CacheKeys StepPaths<by>::keys_of(State const& s) const
+{
+    // After the last scattering, surfaces only contribute emission.
+    if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces) return {};
+    Surface const& surface = world.surfaces[s.triangle];
+    if (is_directional(world.bsdfs[surface.material]) ||
+        (!world.emitter_pdf.empty() && world.emitter_pdf[s.triangle] > 0))
+        return {};
+    vec3 const& t = s.throughput;
+    if (!(glm::min(t.x, glm::min(t.y, t.z)) > 1e-3f * max_component(t)))
+        return {}; // no estimate from channels without throughput
+    vec3 const position = shading_detail::SurfacePoint{surface, s.barycentric}.position();
+    return cell_keys(surface, cache.shift, position, s.direction, s.footprint, bounces - s.scatterings);
+}
+
+template <FindBy by>
+GI_FN bool StepPaths<by>::ends_in_cell(State& s, std::size_t pixel, vec3 indirect, PathSample& out) const
+{
+    s.note = kNoNote;
+    // A cosine lobe (pdf up to 1 / pi) is about as wide as its distance.
+    if (s.arrival_pdf > 0) s.footprint += s.distance * glm::min(1.0f, 1 / std::sqrt(kPi * s.arrival_pdf));
+    CacheKeys const keys = keys_of(s);
+    if (!keys.any()) return false;
+    CachedRadiance const known =
+        read_cells(keys, cache.least, [this](std::uint64_t key) { return cache.sums_of(key); });
+    if (!(s.random.noise2(s.dimension(PathDimension::cache)).x < known.go_on)) {
+        out.radiance[2] += s.throughput * known.radiance;
+        return true;
+    }
+    CacheNoteOnWay note{};
+    for (std::size_t l = 0; l < CacheKeys::kLevels; ++l) note.set_key(l, l < known.to_teach ? keys.level[l] : 0);
+    note.throughput = s.throughput;
+    note.before = indirect;
+    note.weight = luminance(s.throughput) / known.go_on;
+    note.pixel = std::uint32_t(pixel);
+    s.note = cache.open(note);
+    return false;
+}
+
+template <FindBy by>
+GI_FN std::uint32_t StepPaths<by>::go_on(std::size_t pixel, State const& s) const
 {
     std::uint32_t const k = atomic_add(next.count[0], 1);
     next.paths.store(k, {.state = s,
+                         .footprint = s.footprint,
                          .pixel = std::uint32_t(pixel),
                          .vertex = s.vertex,
                          .triangle = s.triangle,
@@ -282,6 +328,7 @@ GI_FN void StepPaths<by>::go_on(std::size_t pixel, State const& s) const
                          .position = s.position,
                          .direction = s.direction});
     if (by_rays) next.queries.store(k, s.query);
+    return k;
 }
 
 template <FindBy by>
@@ -297,7 +344,8 @@ GI_FN void StepPaths<by>::wait(std::size_t pixel, State const& s) const
 GI_FN inline void StartRays::operator()(std::size_t item) const
 {
     constexpr std::uint32_t kLens = 0x1e450000; // as of PathsTracer
-    std::size_t const i = first + item;
+    std::size_t const i = pixel_of(item);
+    if (i >= pixels) return;
     auto const id = std::uint32_t(i);
     if (!hidden.empty() && hidden[i] != 0) {
         samples[i] = {};
@@ -310,13 +358,14 @@ GI_FN inline void StartRays::operator()(std::size_t item) const
     Ray const ray = camera_ray(camera, at, [&] { return s.random.sample2(kLens); });
     s.query = {.ray = ray, .seed = s.random.own_seed() + pass, .start = camera_clearance(ray.origin)};
     s.direction = ray.direction;
-    go_on(i, s);
+    hits.store(go_on(i, s), rays.nearest(world, s.query));
 }
 
 template <FindBy by>
 GI_FN void FirstSteps<by>::operator()(std::size_t item) const
 {
-    std::size_t const i = this->first + item;
+    std::size_t const i = this->pixel_of(item);
+    if (i >= this->pixels) return;
     PathKernelCounts local;
     PathSample out;
     if (this->hidden.empty() || this->hidden[i] == 0) {
@@ -347,6 +396,7 @@ GI_FN void FurtherSteps<by, last>::operator()(std::size_t i) const
     s.position = path.position;
     s.has_position = true;
     s.distance = path.distance;
+    s.footprint = path.footprint;
     if (Own::by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
     PathSample out;
     auto const light_last = [&] {
@@ -355,18 +405,28 @@ GI_FN void FurtherSteps<by, last>::operator()(std::size_t i) const
         if (left != vec3{0}) add_light(out, s.waiting.scatterings, left * s.waiting.light);
         s.waiting.query = no_query();
     };
-    bool goes_on = this->step(s, out, local);
+    bool const is_first = path.vertex == 0; // of the path that a ray of the camera began
+    auto const step = [&] {
+        if (Own::free && !this->cache.cells.empty() && s.vertex > 0) {
+            vec3 const before = is_first ? vec3{0} : this->samples[path.pixel].radiance[2];
+            if (this->ends_in_cell(s, path.pixel, before + out.radiance[2], out)) {
+                ++local.cache_reads;
+                return false;
+            }
+        }
+        return this->step(s, out, local);
+    };
+    bool goes_on = step();
     while (last && goes_on) {
         if (Own::by_rays && s.query.reach > 0) this->meet(s, rays.nearest(this->world, s.query));
         light_last();
-        goes_on = this->step(s, out, local);
+        goes_on = step();
     }
     if (last)
         light_last();
     else
         this->wait(path.pixel, s);
     PathSample& sum = this->samples[path.pixel];
-    bool const is_first = path.vertex == 0; // of the path that a ray of the camera began
     if (!is_first)
         for (std::size_t k = 0; k < out.radiance.size(); ++k) out.radiance[k] += sum.radiance[k];
     if (goes_on)

@@ -1,0 +1,112 @@
+#pragma once
+// The radiance cache of kernels between passes and frames: its memory, its unit, and when it grows.
+
+#include "gi/kernel/launch.h"
+#include "gi/methods/paths/kernels/cache_kernels.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace gi {
+
+template <Space S>
+class KernelCache {
+public:
+    /// @param radius  of the world, m  @param most_bytes  of the cells
+    KernelCache(float radius, std::size_t most_bytes)
+        : most_cells_(std::max(kFirstCells, std::bit_floor(most_bytes / sizeof(CacheCell)))), shift_(cell_shift(radius))
+    {
+        clear();
+    }
+
+    /// Empties it, as light or geometry has changed.
+    void clear()
+    {
+        if (cells_.size() == 0) cells_ = Buffer<CacheCell, S>(kFirstCells);
+        zero(cells_);
+        zero(count_);
+        passes_ = 0;
+        unit_ = 0;
+        empty_ = true;
+    }
+    bool empty() const { return empty_; } ///< nothing was taught since it was cleared
+
+    /// For the paths of a view. @param paths  at most
+    CacheView lend(std::size_t paths)
+    {
+        // First passes, in which no path ends in a cell, have more; what has no room is counted.
+        constexpr std::size_t kNotesOfPath = 3;
+        if (notes_.size() != kNotesOfPath * paths) {
+            notes_ = {};
+            notes_ = ColumnBuffer<CacheNoteOnWay, S>(kNotesOfPath * paths);
+        }
+        fill_bytes(S, count_.view().data, 0, sizeof(std::uint32_t));
+        return view();
+    }
+    /// The paths of the view have ended. @param samples  of all pixels
+    void learn(View<PathSample const> samples)
+    {
+        if (unit_ == 0) choose_unit(samples);
+        launch(S, "notes of the radiance cache", notes_.size(), LearnNotes{view(), samples});
+        empty_ = false;
+    }
+    void end_pass() { ++passes_; }
+    /// Between passes: grows if it is half full. Waits for the device.
+    void grow()
+    {
+        std::vector<std::uint32_t> const counts = download(count_);
+        taken_ = counts[2];
+        refused_ += counts[1];
+        fill_bytes(S, count_.view().data, 0, 2 * sizeof(std::uint32_t));
+        if (2 * std::size_t(taken_) <= cells_.size() || 2 * cells_.size() > most_cells_) return;
+        Buffer<CacheCell, S> const old = std::move(cells_);
+        cells_ = Buffer<CacheCell, S>(4 * old.size() <= most_cells_ ? 4 * old.size() : 2 * old.size());
+        zero(cells_);
+        zero(count_);
+        launch(S, "cells that move", old.size(), MoveCells{old.view(), view()});
+    }
+
+    std::size_t cells() const { return taken_; }
+    std::size_t bytes() const { return cells_.size() * sizeof(CacheCell); }
+    std::uint64_t refused() const { return refused_; } ///< notes for which there was no room
+
+private:
+    static constexpr std::size_t kFirstCells = std::size_t(1) << 18; // 16 MiB
+
+    template <class T>
+    static void zero(Buffer<T, S>& b)
+    {
+        fill_bytes(S, b.view().data, 0, b.size() * sizeof(T));
+    }
+    CacheView view()
+    {
+        return {cells_.view(), unit_ > 0 ? unit_ : 1, shift_, std::uint32_t(least_level(passes_)), notes_.view(),
+                count_.view()};
+    }
+    /// The median of what the notes bring, as a power of two.
+    void choose_unit(View<PathSample const> samples)
+    {
+        Buffer<std::uint32_t, S> exponents(256);
+        zero(exponents);
+        launch(S, "exponents of notes", notes_.size(), CountExponents{view(), samples, exponents.view()});
+        std::vector<std::uint32_t> const counts = download(exponents);
+        std::uint64_t all = 0, sum = 0;
+        for (std::uint32_t const n : counts) all += n;
+        if (all == 0) return; // nothing was brought: it is chosen later
+        int exponent = 0;
+        while (exponent < 255 && 2 * (sum += counts[std::size_t(exponent)]) < all) ++exponent;
+        unit_ = std::ldexp(1.0f, std::clamp(exponent - 127, -60, 60));
+    }
+
+    Buffer<CacheCell, S> cells_;
+    Buffer<std::uint32_t, S> count_{3}; ///< see CacheView
+    ColumnBuffer<CacheNoteOnWay, S> notes_;
+    std::size_t most_cells_;
+    vec3 shift_;
+    float unit_ = 0; ///< 0 = not chosen
+    bool empty_ = true;
+    std::uint32_t passes_ = 0, taken_ = 0;
+    std::uint64_t refused_ = 0;
+};
+
+} // namespace gi
