@@ -16,6 +16,8 @@ namespace gi {
 struct Moment {
     Changes changes; ///< of the world, since the previous moment
     Camera camera;
+    /// The camera at a fraction, [0, 1), of the time that the shutter is open. Empty if anything else moves meanwhile.
+    std::function<Camera(double)> camera_at{};
 };
 /// Callback that moves the world to the moment of a pass (counted from 0 in every frame).
 using Moments = std::function<Moment(std::uint32_t pass)>;
@@ -32,6 +34,9 @@ struct FrameView {
     std::span<std::uint8_t const> hidden{};
     /// Instead of the settings' filter, where the method can.
     std::optional<PixelFilter> filter{};
+    /// The camera at other moments of the exposure, of a world that stands still. Must outlive the call. Only
+    /// `paths_layered_lens` gathers from them; for others the pass has one moment, that of `camera`.
+    std::span<Camera const> during{};
 };
 
 /// How indirect light at a path's last vertex is shared between paths.

@@ -36,5 +36,11 @@ inline double moment_of_pass(std::uint64_t seed, std::uint32_t pass)
 {
     return double(pass_samples_detail::sample(seed, 0x54f7e4, pass).x);
 }
+/// Further moments of a pass, in [0, 1): one in each of `parts` equal parts of that time, all at the same place in
+/// their parts. @param part  < parts
+inline double moment_in_part(std::uint64_t seed, std::uint32_t pass, std::uint32_t part, std::uint32_t parts)
+{
+    return (double(part) + double(pass_samples_detail::sample(seed, 0x9a475, pass).x)) / double(parts);
+}
 
 } // namespace gi

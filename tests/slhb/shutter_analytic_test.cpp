@@ -1,6 +1,8 @@
-// Motion blur, by both methods: while the shutter is open, every path sees a moment of its own.
+// Motion blur: while the shutter is open, every path sees a moment of its own, or, by paths_layered_lens, gathers from
+// several.
 
 #include "gi/methods/reference/reference.h"
+#include "gi/metrics/metrics.h"
 #include "gi/render/pass_samples.h"
 #include "tests/slhb/blur_shapes.h"
 #include "tests/slhb/slhb_render.h"
@@ -156,6 +158,84 @@ TEST(ShutterOfBothMethods, GivesThePictureOfTheReference)
     double const mean = mean_of(expected).mean;
     EXPECT_LT(block_distance(found, expected), 0.03 * mean);
     EXPECT_GT(block_distance(frozen, expected), 3 * block_distance(found, expected));
+}
+
+/// A camera that passes the box and turns, with and without a lens. While all else stands still, passes may gather.
+class GatheredShutter : public testing::TestWithParam<double> {
+protected:
+    static Camera at(double moment)
+    {
+        Camera camera = look_at({0.1 + 0.2 * moment, -0.3, 0.95}, {-0.1 + 0.5 * moment, -0.5, 0}, 70);
+        if (GetParam() > 0) {
+            camera.aperture_radius_m = GetParam();
+            camera.focus_distance_m = 0.8;
+        }
+        return camera;
+    }
+    static RenderResult expose(StartFrames start, RenderSettings const& s, bool gathers = true)
+    {
+        Report report;
+        MovingWorld const world(std::make_shared<Scene const>(box_with_block_and_lamp()), 0, report);
+        Moments const moments = [&](std::uint32_t pass) {
+            Moment now{{}, at(moment_of_pass(s.seed, pass))};
+            if (gathers) now.camera_at = at;
+            return now;
+        };
+        return start(world, at(0), s, report)->frame(at(0), {}, {}, moments);
+    }
+};
+
+/// What differs becomes less with the noise of both, as does the difference of their means.
+TEST_P(GatheredShutter, BecomesThePictureOfSampledMoments)
+{
+    RenderSettings s = small_settings(32, 2048, 1);
+    Picture const sampled = expose(start_path_frames, s).picture;
+    s.seed = 6;
+    s.paths = 64;
+    Picture const few = expose(start_layered_lens_frames, s).picture;
+    s.paths = 1024;
+    Picture const many = expose(start_layered_lens_frames, s).picture;
+    auto const relmse = [&](Picture const& p) {
+        return measure_errors(p.find("color")->data, sampled.find("color")->data, 3).relmse;
+    };
+    EXPECT_LT(relmse(many), 0.35 * relmse(few)); // both contain the noise of sampled moments
+    double const wanted = mean_of(sampled).mean;
+    EXPECT_NEAR(mean_of(many).mean, wanted, 0.005 * wanted);
+    for (char const* const layer : {"L0", "L1", "L2"})
+        EXPECT_NEAR(mean_of(many, layer).mean, mean_of(sampled, layer).mean, 0.01 * wanted) << layer;
+}
+
+TEST_P(GatheredShutter, HasLessNoiseByAsManyPaths)
+{
+    RenderSettings const s = small_settings(48, 16, 2);
+    EXPECT_LT(expose(start_layered_lens_frames, s).relmse, 0.5 * expose(start_path_frames, s).relmse);
+    EXPECT_EQ(expose(start_layered_lens_frames, s).picture.find("color")->data,
+              expose(start_layered_lens_frames, s).picture.find("color")->data);
+}
+
+/// Where the world moves as well, a pass has one moment.
+TEST_P(GatheredShutter, OfAMovingWorldHasTheMomentsOfPasses)
+{
+    RenderSettings const s = small_settings(24, 4, 1);
+    bool const same = expose(start_layered_lens_frames, s, false).picture.find("color")->data ==
+                      expose(start_path_frames, s, false).picture.find("color")->data;
+    EXPECT_EQ(same, GetParam() == 0) << "a lens is gathered from all the same";
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, GatheredShutter, testing::Values(0.0, 0.05));
+
+TEST(GatheredShutterOfASquare, LeavesATrapezoid)
+{
+    Report report;
+    MovingWorld const world(std::make_shared<Scene const>(luminous_square()), 0, report);
+    RenderSettings const s = blur_settings(256);
+    auto const at = [](double moment) {
+        Camera camera = eye();
+        camera.world_from_camera[3].x = -metres(kWay_px) * moment;
+        return camera;
+    };
+    Moments const moments = [&](std::uint32_t pass) { return Moment{{}, at(moment_of_pass(s.seed, pass)), at}; };
+    expect_trapezoid(start_layered_lens_frames(world, eye(), s, report)->frame(eye(), {}, {}, moments).picture);
 }
 
 } // namespace

@@ -36,6 +36,12 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
     auto const renderer =
         start_frames(gi::find_method(plan.method), world, first, plan.settings, report, stop);
     FlatTriangles flat(exposure.still ? gi::Changes{} : world.advance(exposure.from_s));
+    bool const only_camera = exposure.still || world.only_cameras_move();
+    auto const camera_at = [&](double fraction) {
+        double const after_s = exposure.shutter_s * fraction;
+        if (!exposure.still) world.advance(exposure.from_s + after_s);
+        return exposure.camera(world.world(), after_s);
+    };
     auto const moments = [&](std::uint32_t pass) {
         double const after_s = exposure.shutter_s * gi::moment_of_pass(settings.seed, pass);
         gi::Moment now;
@@ -45,6 +51,7 @@ gi::RenderResult expose(gi::Method const& method, gi::MovingWorld& world, Exposu
             flat.see(now.changes, report);
         }
         now.camera = exposure.camera(world.world(), after_s);
+        if (only_camera) now.camera_at = camera_at;
         return now;
     };
     if (!gi::render_option("photons").read_by(plan.method)) gi::lose_lamp_caustics(world.world(), report);

@@ -102,7 +102,12 @@ public:
                 if (moments) {
                     Moment const now = moments(sums.paths);
                     changed(now.changes);
-                    see(full_size(now.camera));
+                    FrameView view = full_size(now.camera);
+                    std::vector<Camera> during;
+                    if (now.camera_at && settings_.of<PathAlgorithm>().layered_lens)
+                        during = cameras_during(now.camera_at, settings_.seed, sums.paths);
+                    view.during = during;
+                    see(view);
                 }
                 one_pass({&sums, 1}, sharing, stop);
             }

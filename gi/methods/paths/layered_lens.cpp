@@ -1,6 +1,7 @@
 #include "gi/methods/paths/layered_lens.h"
 
 #include "gi/methods/paths/primary_map.h"
+#include "gi/render/pass_samples.h"
 #include "gi/render/path_random.h"
 #include "gi/render/ray_path.h"
 #include "gi/scene/shading/warp.h"
@@ -22,12 +23,26 @@ constexpr std::uint32_t kAlone = 0xa10eu; ///< tells streams of random numbers f
 /// Radius of the circle of confusion of what is at this distance along the view, pixels.
 float confusion_px(CameraRays const& eye, float depth_m)
 {
+    if (!eye.has_lens()) return 0;
     float const lens = std::max(glm::length(eye.lens_x), glm::length(eye.lens_y)),
                 step = std::min(glm::length(eye.step_x), glm::length(eye.step_y));
     return lens * std::abs(1 / depth_m - 1 / eye.focus) / step;
 }
 
+/// Of the middle of the lens.
+CameraRays pinhole(CameraRays const& eye) { return eye.has_lens() ? eye.at_lens(vec2{0}) : eye; }
+
 } // namespace
+
+std::vector<Camera> cameras_during(std::function<Camera(double)> const& camera_at, std::uint64_t seed,
+                                   std::uint32_t pass)
+{
+    constexpr std::uint32_t kMoments = 32;
+    std::vector<Camera> cameras;
+    for (std::uint32_t k = 0; k < kMoments; ++k)
+        cameras.push_back(camera_at(moment_in_part(seed, pass, k, kMoments)));
+    return cameras;
+}
 
 int LayeredLens::rays_of(View const& view, std::size_t pixel) const
 {
@@ -36,23 +51,31 @@ int LayeredLens::rays_of(View const& view, std::size_t pixel) const
     return rays_of_[y / ScreenLayers::kTile * layers_.tiles_across() + x / ScreenLayers::kTile];
 }
 
-/// The rays of a pixel are a rank-1 lattice over the lens, shifted at random in every pass.
+/// The rays of a pixel are a rank-1 lattice over the lens, and spread over the moments by a third step, all shifted at
+/// random in every pass.
 Ray LayeredLens::lens_ray(View const& view, std::size_t pixel, int k, int rays) const
 {
-    constexpr std::uint32_t kLens = 0x1e450000; // first dimension of the lens, beyond those of vertices
+    constexpr std::uint32_t kLens = 0x1e450000, kMoment = kLens + 2; // dimensions beyond those of vertices
     RqmcStream const stream =
         pixel_stream(random_key(view.seed), std::uint32_t(pixel), std::uint32_t(view.width), view.pass);
     vec2 const shift = stream.sample2(kLens);
     vec2 const u{std::fmod(float(k) / float(rays) + shift.x, 1.0f),
                  std::fmod(float(k) * 0.618034f + shift.y, 1.0f)};
-    std::size_t const x = pixel % std::size_t(view.width), y = pixel / std::size_t(view.width);
-    return view.rays.at_lens(square_to_disk(u)).through(vec2{float(x), float(y)} + at_);
+    vec2 const at = vec2{float(pixel % std::size_t(view.width)), float(pixel / std::size_t(view.width))} + at_;
+    CameraRays const* eye = &view.rays;
+    if (std::size_t const n = view.during.size(); n > 0) {
+        float const moment = std::fmod(float(k) * 0.56984f + stream.sample(kMoment), 1.0f);
+        eye = &view.during[std::min(n - 1, std::size_t(moment * float(n)))];
+    }
+    return eye->has_lens() ? eye->at_lens(square_to_disk(u)).through(at) : eye->through(at);
 }
 
 /// The layers are those of the lens' centre.
 void LayeredLens::draw(View const& view, Place const& place, float near_m)
 {
-    eye_ = view.rays.at_lens(vec2{0});
+    during_.clear();
+    for (CameraRays const& eye : view.during) during_.emplace_back(pinhole(eye));
+    eye_ = pinhole(view.rays);
     eye_.corner -= float(kMargin) * (eye_.step_x + eye_.step_y);
     int const width = view.width + 2 * kMargin, height = view.height + 2 * kMargin;
     layers_.draw(place.soup, place.soup.count, place.cut_outs, eye_, width, height,
@@ -60,23 +83,47 @@ void LayeredLens::draw(View const& view, Place const& place, float near_m)
                  std::uint32_t(mix_bits(view.seed) + view.pass), ScreenLayers::Tiles::with_depths);
 }
 
-/// As many lens rays as see all of a pixel's blur, from the depths within the margin around.
-void LayeredLens::choose_numbers(CameraRays const& lens)
+/// What lens and motion spread a point of a tile over, at a distance along the view: pixels, squared.
+float LayeredLens::blurred_px2(View const& view, std::size_t tile, float depth_m) const
 {
+    auto const half = float(ScreenLayers::kTile / 2);
+    vec2 const middle = float(ScreenLayers::kTile) *
+                            vec2{float(tile % layers_.tiles_across()), float(tile / layers_.tiles_across())} +
+                        half;
+    vec3 const along = eye_.corner + middle.x * eye_.step_x + middle.y * eye_.step_y,
+               point = eye_.origin + depth_m / glm::dot(eye_.forward, along) * along;
+    float way = 0;
+    vec3 last{0};
+    for (Projection const& project : during_) {
+        vec3 const now = project(point);
+        if (!(now.z > 0)) return kInf; // behind that eye
+        if (&project != during_.data()) way += glm::length(vec2(now) - vec2(last));
+        last = now;
+    }
+    float const radius = confusion_px(view.rays, depth_m);
+    return kPi * radius * radius + (2 * radius + 1) * way;
+}
+
+/// Two lens rays per pixel of a pixel's blur, by the depths within the margin around.
+void LayeredLens::choose_numbers(View const& view)
+{
+    blurred_.assign(layers_.tiles().size(), 0);
+    tbb::parallel_for(std::size_t(0), blurred_.size(), [&](std::size_t t) {
+        ScreenLayers::Depths const& d = layers_.tiles()[t];
+        if (d.farthest_m > 0)
+            blurred_[t] = std::max(blurred_px2(view, t, d.nearest_m), blurred_px2(view, t, d.farthest_m));
+    });
     auto const across = int(layers_.tiles_across()), down = int(layers_.tiles().size()) / std::max(1, across),
                reach = (kMargin + int(ScreenLayers::kTile) - 1) / int(ScreenLayers::kTile);
     rays_of_.resize(layers_.tiles().size());
     tbb::parallel_for(0, down, [&](int y) {
         for (int x = 0; x < across; ++x) {
-            float radius = 0;
+            float blurred = 0;
             for (int j = std::max(0, y - reach); j <= std::min(down - 1, y + reach); ++j)
                 for (int i = std::max(0, x - reach); i <= std::min(across - 1, x + reach); ++i)
-                    if (ScreenLayers::Depths const& d = layers_.tiles()[std::size_t(j * across + i)];
-                        d.farthest_m > 0)
-                        radius =
-                            std::max({radius, confusion_px(lens, d.nearest_m), confusion_px(lens, d.farthest_m)});
+                    blurred = std::max(blurred, blurred_[std::size_t(j * across + i)]);
             rays_of_[std::size_t(y * across + x)] =
-                int(std::clamp(std::ceil(2 * kPi * radius * radius), 1.0f, float(most_rays_)));
+                int(std::clamp(std::ceil(2 * blurred), 1.0f, float(most_rays_)));
         }
     });
 }
@@ -93,7 +140,7 @@ void LayeredLens::look(View const& view, Place const& place, float near_m, PassS
 bool LayeredLens::follow_all(View const& view, Place const& place, PassStop const& stop)
 {
     std::size_t const pixels = std::size_t(view.width) * std::size_t(view.height);
-    choose_numbers(view.rays);
+    choose_numbers(view);
     met_.assign(pixels * std::size_t(most_rays_), kBackground);
     slot_.assign(layers_.size(), 0);
     std::vector<std::vector<Alone>> alone((pixels + kPixelsOfTask - 1) / kPixelsOfTask);

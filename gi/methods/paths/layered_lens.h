@@ -1,20 +1,29 @@
 #pragma once
-// Depth of field from a layered hit buffer of the view (Yu 2012, sec. 7.2, after Lee, Eisemann and Seidel 2010):
-// surfaces are shaded once, as the lens' centre sees them, and every pixel gathers from them by many rays through the
-// lens. What these meet is found exactly; what the layers lack is shaded for the ray alone.
+// Depth of field, and motion blur of a camera that moves, from a layered hit buffer of the view (Yu 2012, sec. 7.2,
+// after Lee, Eisemann and Seidel 2010 and McGuire, Enderton, Shirley and Luebke 2010): surfaces are shaded once, as
+// the lens' centre sees them at the moment of the pass, and every pixel gathers from them by many rays, each through
+// another point of the lens and at another moment of the exposure. What these meet is found exactly; what the layers
+// lack is shaded for the ray alone. The world stands still meanwhile.
 
 #include "gi/methods/paths/screen_layers.h"
 #include "gi/methods/paths/tracer.h"
+#include "gi/scene/model/projection.h"
 
+#include <functional>
 #include <vector>
 
 namespace gi {
+
+/// The camera at the moments at which rays of a pass see it. @param camera_at  as in Moment
+std::vector<Camera> cameras_during(std::function<Camera(double)> const& camera_at, std::uint64_t seed,
+                                   std::uint32_t pass);
 
 class LayeredLens {
 public:
     /// What the lens rays of a pass have in common.
     struct View {
-        CameraRays const& rays; ///< with a lens
+        CameraRays const& rays;             ///< at the moment of the pass; with a lens, or it moves
+        std::span<CameraRays const> during; ///< at successive moments of the exposure; empty = it does not move
         int width, height;      ///< pixels
         PixelFilter filter;
         std::span<std::uint8_t const> hidden; ///< as in FrameView
@@ -50,7 +59,8 @@ private:
     };
 
     void draw(View const& view, Place const& place, float near_m);
-    void choose_numbers(CameraRays const& lens);
+    void choose_numbers(View const& view);
+    float blurred_px2(View const& view, std::size_t tile, float depth_m) const;
     bool follow_all(View const& view, Place const& place, PassStop const& stop);
     std::size_t follow(View const& view, Place const& place, std::size_t first, std::size_t last,
                        std::vector<Alone>& alone);
@@ -61,9 +71,11 @@ private:
 
     ScreenLayers layers_;
     CameraRays eye_{}; ///< of the layers
+    std::vector<Projection> during_; ///< of View::during, to pixels
     int most_rays_ = 0;
     vec2 at_{0.5f};                   ///< place in the pixel
-    std::vector<int> rays_of_;        ///< per tile of the layers: lens rays of its pixels
+    std::vector<float> blurred_;      ///< per tile of the layers: what its surfaces are spread over, pixels^2
+    std::vector<int> rays_of_;        ///< per tile: lens rays of its pixels
     std::vector<std::uint32_t> met_;  ///< per pixel and lens ray: the index of a start
     std::vector<std::uint32_t> slot_; ///< per layer: the same
     std::vector<PathStart> starts_;

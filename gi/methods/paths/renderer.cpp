@@ -39,9 +39,10 @@ PathsRenderer::PathsRenderer(World const& world, std::span<FrameView const> view
         cache_.emplace(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
 }
 
-bool PathsRenderer::by_lenses() const
+bool PathsRenderer::gathers() const
 {
-    return by_.layered_lens && std::ranges::all_of(views_, [](SeenView const& v) { return v.rays.has_lens(); });
+    return by_.layered_lens &&
+           std::ranges::all_of(views_, [](SeenView const& v) { return v.rays.has_lens() || !v.during.empty(); });
 }
 
 bool PathsRenderer::orthographic() const
@@ -159,6 +160,9 @@ void PathsRenderer::see(std::span<FrameView const> views)
         if (k == views_.size()) views_.emplace_back();
         SeenView& v = views_[k];
         bool const known = v.follow(now, world_.origin, settings_.filter);
+        v.during.clear();
+        for (Camera const& c : now.during)
+            if (!c.orthographic) v.during.push_back(camera_rays(c, v.width, v.height, world_.origin));
         v.partner = now.partner;
         v.hidden = now.hidden;
         v.first = first;
@@ -232,16 +236,16 @@ void PathsRenderer::prepare(std::uint32_t index, Sides sides, PassStop const& st
             draw(v.screen, traced_.soup.count);
             if (sides == Sides::pair) draw(v.screen_behind, std::min(traced_.first_moving, traced_.soup.count));
         }
-        bool const lens = sides == Sides::one && by_lenses();
+        bool const lens = sides == Sides::one && gathers();
         if (!lens) {
             v.lens.reset();
         } else {
             if (!v.lens) v.lens.emplace();
-            eye = v.rays.at_lens(vec2{0});
-            v.lens->look({v.rays, v.width, v.height, v.filter, v.hidden, settings_.seed, index},
+            if (v.rays.has_lens()) eye = v.rays.at_lens(vec2{0});
+            v.lens->look(lens_view(v, settings_.seed, index),
                          {traced_.soup, traced_.cut_outs, view(world_), *exact_}, near_m, stop);
         }
-        if (!v.primary) continue;
+        if (!v.primary || !v.during.empty()) continue;
         if (sides == Sides::pair)
             v.primary->refresh_pair(eye, near_m, index, traced_.first_moving);
         else
@@ -288,11 +292,11 @@ void PathsRenderer::pass(std::uint32_t index, std::span<Accumulator> sums, Verte
     if (caustics_) caustics_->prepare(*exact_, index, BuildStop(stop_), sums[0].counts);
     StageTimer const timer(report_, "paths");
     PathsTracer::Pass const tracing = this->tracing(index, sharing == VertexSharing::cached, stop);
-    if (by_lenses())
+    if (gathers())
         paths_.trace_lenses(tracing, views_, sums);
     else
         paths_.trace(tracing, views_, sharing, sums);
-    if (by_.layered_lens && !by_lenses() &&
+    if (by_.layered_lens && !gathers() &&
         std::ranges::any_of(views_, [](SeenView const& v) { return v.rays.has_lens(); }))
         report_.lose("passes whose lens was sampled, not gathered from layers, as another view has none", 1);
     if (control_) paths_.control(tracing, views_[0], *control_);

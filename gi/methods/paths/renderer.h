@@ -103,8 +103,8 @@ private:
     /// Updates colours, roughnesses and the sky.
     void materials_changed();
     bool orthographic() const;
-    /// True if all views are gathered from layers.
-    bool by_lenses() const;
+    /// True if all views are gathered from layers: each has a lens, or moves while the shutter is open.
+    bool gathers() const;
     void build_exact();
     void make_axes();
     void make_light_points();

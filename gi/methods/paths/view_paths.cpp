@@ -78,6 +78,11 @@ void ViewPaths::choose_block()
     block_ = settings_.of<PathAlgorithm>().surfaces == SurfacesBy::rays ? kSmallBlock * std::min(n * n, std::size_t(4)) : kBlock;
 }
 
+LayeredLens::View lens_view(SeenView const& view, std::uint64_t seed, std::uint32_t pass)
+{
+    return {view.rays, view.during, view.width, view.height, view.filter, view.hidden, seed, pass};
+}
+
 PathsTracer ViewPaths::tracer_of(SeenView const& view) const
 {
     return {world_, view.rays, view.width, settings_};
@@ -283,8 +288,7 @@ void ViewPaths::trace_lenses(PathsTracer::Pass const& pass, SeenViews const& vie
                          local.paths, local.work);
         };
         in_turns(pass, starts.size(), trace_block, work);
-        LayeredLens::View const through{view.rays,   view.width,     view.height, view.filter,
-                                        view.hidden, settings_.seed, pass.index};
+        LayeredLens::View const through = lens_view(view, settings_.seed, pass.index);
         WorldView const world = gi::view(world_);
         work.in_blocks(view.pixels(), pass.stop, [&](std::size_t first, std::size_t last, Counts&) {
             for (std::size_t p = first; p < last; ++p)

@@ -26,9 +26,13 @@ struct SeenView : TracedView {
     std::optional<PrimaryMap> primary;    ///< none for orthographic cameras
     /// If paths find surfaces there: of the view, and of what stays in it, for pairs.
     std::optional<ScreenLayers> screen, screen_behind;
-    std::optional<LayeredLens> lens;      ///< if it has one, and is gathered from layers
+    std::vector<CameraRays> during;       ///< FrameView::during
+    std::optional<LayeredLens> lens;      ///< if it is gathered from layers
     std::size_t first = 0;                ///< index of its first pixel among the pixels of all views
 };
+
+/// What its LayeredLens needs in a pass.
+LayeredLens::View lens_view(SeenView const& view, std::uint64_t seed, std::uint32_t pass);
 
 /// Views of one moment; a partner precedes the views that reuse its light.
 using SeenViews = std::deque<SeenView>;

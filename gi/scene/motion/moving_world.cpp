@@ -78,6 +78,11 @@ MovingWorld::MovingWorld(std::shared_ptr<Scene const> scene, double time_s, Repo
     }
 }
 
+bool MovingWorld::only_cameras_move() const
+{
+    return parts_.moving.empty() && std::ranges::find(light_moves_, true) == light_moves_.end();
+}
+
 Changes MovingWorld::advance(double time_s) { return advance(evaluate_pose(*parts_.world.scene, time_s)); }
 
 Changes MovingWorld::advance(Pose const& pose)

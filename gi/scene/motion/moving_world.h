@@ -47,6 +47,8 @@ public:
     World const& world() const { return parts_.world; }
     /// Returns the instances that can move, with their reasons, in the order of their triangles.
     std::vector<Instance> const& moving() const { return parts_.moving; }
+    /// True if advance(time_s) changes nothing but cameras.
+    bool only_cameras_move() const;
 
     /// Advances to the pose of the playing clips at this time.
     Changes advance(double time_s);
