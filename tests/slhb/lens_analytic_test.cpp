@@ -191,6 +191,31 @@ TEST(LayeredLens, ShadesTheSideThatALensRaySees)
     EXPECT_LT(block_distance(gathered, expected), 1.2 * block_distance(sampled, expected)); // both with its noise
 }
 
+/// Blocks on a floor, which is one rectangle: within the blocks it is dark, and pixels beside them are not.
+TEST(LayeredLens, TakesNoLightFromWithinWhatStandsOnAFloor)
+{
+    Scene scene;
+    int const grey = add_material(scene, lambert(vec3{0.6f}));
+    add_box(scene, {-1, -1, -1}, {1, 1, 1}, grey, true);
+    add_quad(scene, {-0.3f, 0.99f, -0.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, add_material(scene, emitter(vec3{10})));
+    for (int i = 0; i < 25; ++i) {
+        vec3 const at{-0.8f + 0.4f * float(i % 5), -1, -0.8f + 0.3f * float(i / 5)};
+        add_box(scene, at - vec3{0.08f, 0, 0.08f}, at + vec3{0.08f, 0.1f, 0.08f}, grey, false);
+    }
+    World const world = world_of(std::move(scene));
+    Camera camera = look_at({0, 0, 0.95}, {0, -0.9, -0.2}, 60);
+    camera.aperture_radius_m = 0.02;
+    camera.focus_distance_m = 0.7;
+    RenderSettings const s = small_settings(32, 512, 1);
+    Report report;
+    Picture const sampled = render_paths(world, camera, s, {}, {}, report).picture,
+                  gathered = render_layered_lens(world, camera, s, {}, {}, report).picture;
+    for (char const* const layer : {"L1", "L2"}) {
+        double const wanted = mean_of(sampled, layer).mean;
+        EXPECT_NEAR(mean_of(gathered, layer).mean, wanted, 0.005 * wanted) << layer;
+    }
+}
+
 /// Where a blurred edge ends, alpha and what denoisers are given are those of sampled lenses.
 TEST(LayeredLens, AlphaAndAlbedoOfABlurredEdge)
 {

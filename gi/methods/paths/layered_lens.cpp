@@ -29,6 +29,25 @@ float confusion_px(CameraRays const& eye, float depth_m)
     return lens * std::abs(1 / depth_m - 1 / eye.focus) / step;
 }
 
+/// A lens ray whose layer the lens' centre does not see.
+struct Sight {
+    std::size_t ray;
+    std::uint32_t layer;
+};
+
+/// Whether a point is seen from where a lens ray starts. What is not, such as a floor within a column that stands on it,
+/// has another light than what the ray met beside it.
+RayQuery towards(vec3 point, RayQuery const& lens_ray)
+{
+    constexpr float kBefore = 1 - 1e-4f; // the surface itself is not in the way
+    vec3 const way = point - lens_ray.ray.origin;
+    float const length = glm::length(way);
+    RayQuery query = lens_ray;
+    query.ray.direction = way * (1 / length);
+    query.reach = kBefore * length;
+    return query;
+}
+
 /// Of the middle of the lens.
 CameraRays pinhole(CameraRays const& eye) { return eye.has_lens() ? eye.at_lens(vec2{0}) : eye; }
 
@@ -173,6 +192,7 @@ std::size_t LayeredLens::follow(View const& view, Place const& place, std::size_
     thread_local std::vector<std::size_t> places;
     rays.clear();
     places.clear();
+    std::vector<Sight> sights;
     for (std::size_t p = first; p < last; ++p) {
         if (!view.hidden.empty() && view.hidden[p] != 0) continue;
         int const n = rays_of(view, p);
@@ -186,23 +206,46 @@ std::size_t LayeredLens::follow(View const& view, Place const& place, std::size_
     }
     hits.resize(rays.size());
     place.exact.nearest(rays, hits);
-    for (std::size_t k = 0; k < hits.size(); ++k) {
-        if (hits[k].triangle == kNoTriangle) continue;
-        std::uint32_t const layer = layer_of(place, hits[k], rays[k].ray.direction);
-        if (layer == kBackground) {
-            alone.push_back(
-                {places[k], {hash_words(std::uint32_t(places[k]), kAlone), hits[k].triangle, rays[k].ray}});
-            continue;
-        }
+    auto const leave_alone = [&](std::size_t k) {
+        alone.push_back(
+            {places[k], {hash_words(std::uint32_t(places[k]), kAlone), hits[k].triangle, rays[k].ray}});
+    };
+    auto const take = [&](std::size_t k, std::uint32_t layer) {
         met_[places[k]] = layer;
         std::atomic_ref(slot_[layer]).store(1, std::memory_order_relaxed);
+    };
+    thread_local std::vector<RayQuery> queries;
+    thread_local std::vector<std::uint8_t> blocked;
+    queries.clear();
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+        if (hits[k].triangle == kNoTriangle) continue;
+        Found const found = layer_of(place, hits[k], rays[k].ray.direction);
+        if (found.layer == kBackground) {
+            leave_alone(k);
+        } else if (found.hidden) {
+            sights.push_back({k, found.layer});
+            queries.push_back(towards(found.position, rays[k]));
+        } else {
+            take(k, found.layer);
+        }
     }
+    blocked.resize(queries.size());
+    place.exact.occluded(queries, blocked);
+    for (std::size_t i = 0; i < sights.size(); ++i)
+        blocked[i] != 0 ? leave_alone(sights[i].ray) : take(sights[i].ray, sights[i].layer);
     return rays.size();
+}
+
+/// Through the texel's place, from the lens' centre.
+Ray LayeredLens::layer_ray(std::size_t texel) const
+{
+    std::size_t const width = layers_.columns();
+    return eye_.through(vec2{float(texel % width), float(texel / width)} + at_);
 }
 
 /// The layer, under the texel that shows a hit, of its triangle; or of one that goes on there in the same way, as of a
 /// mesh finer than texels. kBackground if there is none of which the lens' centre sees the same side.
-std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 direction) const
+LayeredLens::Found LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 direction) const
 {
     constexpr float kAlike = 0.95f; // cosine
     Surface const& s = place.world.surfaces[hit.triangle];
@@ -210,11 +253,14 @@ std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 dir
                normal = shading_detail::triangle_normal(s);
     std::optional<ScreenLayers::Texel> const texel = layers_.texel_at(position);
     bool const front = glm::dot(normal, direction) < 0;
-    if (!texel || (glm::dot(normal, position - eye_.origin) < 0) != front) return kBackground;
+    if (!texel || (glm::dot(normal, position - eye_.origin) < 0) != front) return {};
     std::uint32_t best = kBackground;
     float nearest_m = texel->width_m;
     for (std::uint32_t l = layers_.first(texel->index); l < layers_.first(texel->index + 1); ++l) {
-        if (layers_.triangle(l) == hit.triangle) return l;
+        if (layers_.triangle(l) == hit.triangle) {
+            best = l;
+            break;
+        }
         Surface const& other = place.world.surfaces[layers_.triangle(l)];
         vec3 const n = shading_detail::triangle_normal(other);
         float const off = std::abs(glm::dot(n, position - other.corner));
@@ -223,7 +269,12 @@ std::uint32_t LayeredLens::layer_of(Place const& place, Hit const& hit, vec3 dir
         nearest_m = off;
         best = l;
     }
-    return best;
+    if (best == kBackground || best == layers_.front(texel->index)) return {best};
+    Surface const& met = place.world.surfaces[layers_.triangle(best)];
+    vec3 const n = shading_detail::triangle_normal(met);
+    Ray const ray = layer_ray(texel->index);
+    float const t = glm::dot(n, met.corner - ray.origin) / glm::dot(n, ray.direction);
+    return {best, true, ray.origin + t * ray.direction};
 }
 
 /// A path for every layer that was met: of a texel within the picture the first has its pixel's random numbers.
@@ -242,8 +293,7 @@ void LayeredLens::make_starts(View const& view)
             std::uint32_t const stream = within && first
                                              ? std::uint32_t(y * view.width + x)
                                              : hash_words(layers_.triangle(l), std::uint32_t(t) ^ kAlone);
-            starts_.push_back(
-                {stream, layers_.triangle(l), eye_.through(vec2{float(t % width), float(t / width)} + at_)});
+            starts_.push_back({stream, layers_.triangle(l), layer_ray(t)});
             first = false;
         }
     }

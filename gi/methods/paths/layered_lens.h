@@ -64,7 +64,13 @@ private:
     bool follow_all(View const& view, Place const& place, PassStop const& stop);
     std::size_t follow(View const& view, Place const& place, std::size_t first, std::size_t last,
                        std::vector<Alone>& alone);
-    std::uint32_t layer_of(Place const& place, Hit const& hit, vec3 direction) const;
+    struct Found {
+        std::uint32_t layer = kBackground;
+        bool hidden = false; ///< from the lens' centre
+        vec3 position{0};    ///< of the layer
+    };
+    Found layer_of(Place const& place, Hit const& hit, vec3 direction) const;
+    Ray layer_ray(std::size_t texel) const;
     void make_starts(View const& view);
     int rays_of(View const& view, std::size_t pixel) const;
     Ray lens_ray(View const& view, std::size_t pixel, int k, int rays) const;

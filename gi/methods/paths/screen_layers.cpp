@@ -48,8 +48,16 @@ void ScreenLayers::draw(TriangleSoup const& soup, std::size_t last, CutOuts cons
     for (std::size_t t = 0; t < grid_.texels(); ++t) offset_[t + 1] += offset_[t];
     layers_.resize(offset_.back());
     std::vector<std::uint32_t> next(offset_.begin(), offset_.end() - 1);
+    std::vector<float> nearest(tiles == Tiles::with_depths ? grid_.texels() : 0, 0.0f); // 1 / m
+    front_.resize(nearest.size());
     for (BorrowedFragments& f : parts)
-        for (std::size_t k = 0; k < f->count; ++k) layers_[next[f->texel[k]]++] = f->primitive[k] & kPrimitiveMask;
+        for (std::size_t k = 0; k < f->count; ++k) {
+            std::uint32_t const t = f->texel[k], layer = next[t]++;
+            layers_[layer] = f->primitive[k] & kPrimitiveMask;
+            if (nearest.empty() || !(f->depth[k] > nearest[t])) continue;
+            nearest[t] = f->depth[k];
+            front_[t] = layer;
+        }
 }
 
 namespace {

@@ -29,6 +29,8 @@ public:
     /// Texel t, row by row, has the layers first(t) to first(t + 1) - 1, in no order.
     std::uint32_t first(std::size_t t) const { return offset_[t]; }
     std::uint32_t triangle(std::uint32_t layer) const { return layers_[layer]; }
+    /// The nearest layer of a texel that has any. If tiles were asked for.
+    std::uint32_t front(std::size_t t) const { return front_[t]; }
     /// The texel that shows a point, with what its width is there, m; none beside the view.
     struct Texel {
         std::size_t index;
@@ -40,6 +42,7 @@ public:
         float nearest_m = kInf, farthest_m = 0;
     };
     static constexpr std::uint32_t kTile = 16;
+    std::uint32_t columns() const { return grid_.width; }
     std::uint32_t tiles_across() const { return (grid_.width + kTile - 1) / kTile; }
     std::span<Depths const> tiles() const { return tiles_; }
 
@@ -48,6 +51,7 @@ private:
     float texel_ = 0;                   ///< width of a texel, as a share of the distance along the view
     std::vector<std::uint32_t> offset_; ///< as in HitBuffer
     std::vector<std::uint32_t> layers_; ///< triangles, in no order
+    std::vector<std::uint32_t> front_;  ///< per texel: index of a layer
     std::vector<Depths> tiles_;
 };
 
