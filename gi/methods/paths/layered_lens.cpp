@@ -102,8 +102,8 @@ void LayeredLens::draw(View const& view, Place const& place, float near_m)
                  std::uint32_t(mix_bits(view.seed) + view.pass), ScreenLayers::Tiles::with_depths);
 }
 
-/// What lens and motion spread a point of a tile over, at a distance along the view: pixels, squared.
-float LayeredLens::blurred_px2(View const& view, std::size_t tile, float depth_m) const
+/// Of a point in the middle of a tile, at a distance along the view.
+LayeredLens::Blur LayeredLens::blur(View const& view, std::size_t tile, float depth_m) const
 {
     auto const half = float(ScreenLayers::kTile / 2);
     vec2 const middle = float(ScreenLayers::kTile) *
@@ -115,34 +115,39 @@ float LayeredLens::blurred_px2(View const& view, std::size_t tile, float depth_m
     vec3 last{0};
     for (Projection const& project : during_) {
         vec3 const now = project(point);
-        if (!(now.z > 0)) return kInf; // behind that eye
+        if (!(now.z > 0)) return {kInf, kInf}; // behind that eye
         if (&project != during_.data()) way += glm::length(vec2(now) - vec2(last));
         last = now;
     }
     float const radius = confusion_px(view.rays, depth_m);
-    return kPi * radius * radius + (2 * radius + 1) * way;
+    return {kPi * radius * radius + (2 * radius + 1) * way, radius + way};
 }
 
-/// Two lens rays per pixel of a pixel's blur, by the depths within the margin around.
+/// Two lens rays for every pixel of the largest blur that reaches a tile, from within the margin around.
 void LayeredLens::choose_numbers(View const& view)
 {
-    blurred_.assign(layers_.tiles().size(), 0);
-    tbb::parallel_for(std::size_t(0), blurred_.size(), [&](std::size_t t) {
+    blurs_.assign(layers_.tiles().size(), {});
+    tbb::parallel_for(std::size_t(0), blurs_.size(), [&](std::size_t t) {
         ScreenLayers::Depths const& d = layers_.tiles()[t];
-        if (d.farthest_m > 0)
-            blurred_[t] = std::max(blurred_px2(view, t, d.nearest_m), blurred_px2(view, t, d.farthest_m));
+        if (!(d.farthest_m > 0)) return;
+        Blur const near = blur(view, t, d.nearest_m), far = blur(view, t, d.farthest_m);
+        blurs_[t] = {std::max(near.area_px2, far.area_px2), std::max(near.reach_px, far.reach_px)};
     });
     auto const across = int(layers_.tiles_across()), down = int(layers_.tiles().size()) / std::max(1, across),
                reach = (kMargin + int(ScreenLayers::kTile) - 1) / int(ScreenLayers::kTile);
     rays_of_.resize(layers_.tiles().size());
     tbb::parallel_for(0, down, [&](int y) {
         for (int x = 0; x < across; ++x) {
-            float blurred = 0;
+            float area_px2 = 0;
             for (int j = std::max(0, y - reach); j <= std::min(down - 1, y + reach); ++j)
-                for (int i = std::max(0, x - reach); i <= std::min(across - 1, x + reach); ++i)
-                    blurred = std::max(blurred, blurred_[std::size_t(j * across + i)]);
+                for (int i = std::max(0, x - reach); i <= std::min(across - 1, x + reach); ++i) {
+                    Blur const& b = blurs_[std::size_t(j * across + i)];
+                    int const tiles_between = std::max(std::abs(i - x), std::abs(j - y)) - 1;
+                    if (float(tiles_between * int(ScreenLayers::kTile)) < b.reach_px)
+                        area_px2 = std::max(area_px2, b.area_px2);
+                }
             rays_of_[std::size_t(y * across + x)] =
-                int(std::clamp(std::ceil(2 * blurred), 1.0f, float(most_rays_)));
+                int(std::clamp(std::ceil(2 * area_px2), 1.0f, float(most_rays_)));
         }
     });
 }

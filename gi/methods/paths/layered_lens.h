@@ -60,7 +60,11 @@ private:
 
     void draw(View const& view, Place const& place, float near_m);
     void choose_numbers(View const& view);
-    float blurred_px2(View const& view, std::size_t tile, float depth_m) const;
+    /// What lens and motion spread a point over.
+    struct Blur {
+        float area_px2 = 0, reach_px = 0;
+    };
+    Blur blur(View const& view, std::size_t tile, float depth_m) const;
     bool follow_all(View const& view, Place const& place, PassStop const& stop);
     std::size_t follow(View const& view, Place const& place, std::size_t first, std::size_t last,
                        std::vector<Alone>& alone);
@@ -80,7 +84,7 @@ private:
     std::vector<Projection> during_; ///< of View::during, to pixels
     int most_rays_ = 0;
     vec2 at_{0.5f};                   ///< place in the pixel
-    std::vector<float> blurred_;      ///< per tile of the layers: what its surfaces are spread over, pixels^2
+    std::vector<Blur> blurs_;         ///< per tile of the layers: the largest
     std::vector<int> rays_of_;        ///< per tile: lens rays of its pixels
     std::vector<std::uint32_t> met_;  ///< per pixel and lens ray: the index of a start
     std::vector<std::uint32_t> slot_; ///< per layer: the same
