@@ -125,8 +125,8 @@ constexpr std::array kMethods{
            .for_display = paths_for_display,
            .check = check_screen_lhb_options},
     Method{.name = "paths_layered_lens",
-           .summary = "as paths, but depth of field is gathered from layers of the view, which are shaded once "
-                      "for all of the lens",
+           .summary = "as paths, but depth of field and motion blur of the camera are gathered from layers of the "
+                      "view, which are shaded once",
            .render = render_layered_lens,
            .frames = start_layered_lens_frames,
            .options = paths_options,

@@ -156,5 +156,24 @@ TEST(BenchPictures, WrongCallsAreRefused)
     EXPECT_FALSE(std::filesystem::exists(folder / "d"));
 }
 
+TEST(BenchPictures, ShowsMethodsWithLayersOfTheView)
+{
+    TemporaryFolder const folder;
+    std::ofstream(folder / "lens.yaml")
+        << "models: [{name: box, generate: {kind: cornell}}]\n"
+           "cameras: [{name: lens, from: [0.28, 0.27, -0.6], at: [0.28, 0.25, 0.28], "
+           "aperture_radius: 0.03, focus_distance: 0.75}]\n";
+    run_well("bench pictures --scenes lens.yaml --size 24x24 --repeats 1 --methods paths_layered_lens,screen_lhb "
+             "--denoise none --reference-paths 64 --out d --budgets 16paths",
+             folder.path());
+    BenchFolder const found = read_bench_folder(folder / "d");
+    BenchTable const& t = table_of(found, "pictures");
+    ASSERT_EQ(t.rows.size(), 2u);
+    for (auto const& row : t.rows) {
+        EXPECT_EQ(number(cell(t, row, "paths")), 16);
+        EXPECT_NEAR(number(cell(t, row, "bias")), 1, 0.1) << to_text(cell(t, row, "method"));
+    }
+}
+
 } // namespace
 } // namespace viewer::test

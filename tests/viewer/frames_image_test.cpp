@@ -118,6 +118,20 @@ TEST(Frames, OfWhatStandsStillHaveNoShutter)
     EXPECT_NE(difference(folder / "open_0.exr", folder / "closed_0.exr"), "");
 }
 
+/// Layers are gathered over the exposure if only the camera moves; where a figure walks as well, a path has one moment.
+TEST(Frames, AreGatheredOverTheShutterIfOnlyTheCameraMoves)
+{
+    TemporaryFolder const folder;
+    std::string const call = "render atrium --size 24x16 --paths 2 --radiance-cache off --frames 0:1@8 "
+                             "--turntable 90deg --shutter 0.1 ";
+    for (std::string const time : {"", "--time 0.4 "}) {
+        run_well(call + time + "--method paths --out sampled_%d.exr", folder.path());
+        run_well(call + time + "--method paths_layered_lens --out gathered_%d.exr", folder.path());
+        EXPECT_EQ(difference(folder / "sampled_0.exr", folder / "gathered_0.exr").empty(), time.empty());
+        std::filesystem::remove(folder / "sampled_0.exr");
+        std::filesystem::remove(folder / "gathered_0.exr");
+    }
+}
 /// The camera is where it was as each shutter opens, but goes round half as fast.
 TEST(Frames, OfAnotherMotionAreKept)
 {
