@@ -3,7 +3,7 @@
 // after Lee, Eisemann and Seidel 2010 and McGuire, Enderton, Shirley and Luebke 2010): surfaces are shaded once, as
 // the lens' centre sees them at the moment of the pass, and every pixel gathers from them by many rays, each through
 // another point of the lens and at another moment of the exposure. What these meet is found exactly; what the layers
-// lack is shaded for the ray alone. The world stands still meanwhile.
+// lack, or show where the ray sees nothing of it, is shaded for the ray alone. The world stands still meanwhile.
 
 #include "gi/methods/paths/screen_layers.h"
 #include "gi/methods/paths/tracer.h"
@@ -46,7 +46,7 @@ public:
     /// something, its place). @param samples  one per start
     PathSample gather(View const& view, WorldView const& world, std::size_t pixel,
                       std::span<PathSample const> samples) const;
-    /// Lens rays of the pass; of these, those that met what no layer shows.
+    /// Lens rays of the pass; of these, those that met what no layer in their sight shows.
     std::uint64_t rays() const { return asked_; }
     std::uint64_t alone() const { return alone_; }
 

@@ -439,7 +439,7 @@ void ViewPaths::report_work() const
     if (lens_rays_ > 0) {
         report_.count("lens rays", double(lens_rays_));
         report_.count("paths of what lens rays met", double(lens_paths_));
-        report_.count("of these, of what no layer shows", double(lens_alone_));
+        report_.count("of these, of what no layer in sight shows", double(lens_alone_));
     }
     if (pair_paths_ > 0)
         report_.count("share of a pair's paths traced on both sides",
