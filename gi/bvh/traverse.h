@@ -37,13 +37,14 @@ struct BvhRay {
     }
 };
 
-/// A stack entry of traversal.
-struct BvhEntry {
-    std::uint32_t at; ///< node, or leaf with kIsLeaf
-    float distance;   ///< where the ray enters it
+/// A stack entry of traversal: children of a node that are still to be visited (Ylitie, Karras and Laine 2017). One per
+/// level of the tree, where an entry per child would take three times the memory of a device's threads.
+struct BvhGroup {
+    std::uint32_t first_node, first_leaf; ///< as in the node
+    std::uint32_t children;               ///< bits 0 to 7: those to visit; from bit 8 on: how many are leaves
+    float distance;                       ///< where the ray enters the nearest of them
 };
 inline constexpr std::uint32_t kIsLeaf = 0x80000000u;
-inline constexpr std::size_t kStackEntries = kDeepest * (kBvhWidth - 1) + 1;
 
 /// Factor of the distances where rays leave boxes: exceeds the rounding of boxes that are far away. Near ones are
 /// enlarged when they are built, see set_child_box.
@@ -123,49 +124,65 @@ GI_FN void meet_leaf(Leaf const& leaf, BvhRay const& ray, BvhHit& hit, Accepts c
     }
 }
 
+/// Takes the next child from a stack of groups; kNoBvhTriangle if there is none. @param top  number of groups
+template <bool any>
+GI_FN std::uint32_t pop_child(BvhGroup* stack, int& top, float reach)
+{
+    while (top > 0) {
+        BvhGroup& group = stack[top - 1];
+        if (!any && group.distance > reach) {
+            --top;
+            continue;
+        }
+        auto const k = lowest_bit(group.children), leaves = group.children >> 8;
+        std::uint32_t const child = k < leaves ? kIsLeaf | (group.first_leaf + k) : group.first_node + k - leaves;
+        group.children &= group.children - 1;
+        if ((group.children & 0xffu) == 0) --top;
+        return child;
+    }
+    return kNoBvhTriangle;
+}
+
 /// Finds the nearest triangle, or with `any` some triangle, nearer than hit.distance. The nearest child first, the
 /// others in no order: sorting them would cost a device more than it saves.
 template <bool any, class Accepts>
 GI_FN void trace_scalar(BvhView const& bvh, BvhRay const& ray, BvhHit& hit, Accepts const& accepts)
 {
     if (bvh.nodes.empty()) return;
-    BvhEntry stack[kStackEntries];
+    BvhGroup stack[kDeepest];
     int top = 0;
     std::uint32_t at = 0;
-    auto const pop = [&] {
-        while (top > 0) {
-            BvhEntry const entry = stack[--top];
-            if (any || entry.distance <= hit.distance) return entry.at;
-        }
-        return kNoBvhTriangle;
-    };
     // Walks inner nodes in a loop of their own, so that the threads of a warp reach leaves together.
     for (;;) {
         while ((at & kIsLeaf) == 0) {
             MetChildren const met = meet_children(bvh.nodes[at], ray, hit.distance);
-            BvhEntry nearest{kNoBvhTriangle, kInf};
+            if (met.bits == 0) {
+                at = pop_child<any>(stack, top, hit.distance);
+                continue;
+            }
+            std::uint32_t nearest = kBvhWidth;
+            float distance = kInf, others = kInf;
             // Unrolled, so that arrays stay in registers.
 #pragma unroll
             for (std::uint32_t k = 0; k < kBvhWidth; ++k) {
                 if ((met.bits >> k & 1) == 0) continue;
-                BvhEntry entry{met.child(k), met.enters[k]};
-                if (nearest.at != kNoBvhTriangle) {
-                    if (!any && entry.distance < nearest.distance) {
-                        BvhEntry const farther = nearest;
-                        nearest = entry;
-                        entry = farther;
-                    }
-                    stack[top++] = entry;
+                float const enters = met.enters[k];
+                if (nearest == kBvhWidth || (!any && enters < distance)) {
+                    others = smaller(others, distance);
+                    nearest = k;
+                    distance = enters;
                 } else {
-                    nearest = entry;
+                    others = smaller(others, enters);
                 }
             }
-            at = met.bits != 0 ? nearest.at : pop();
+            if (std::uint32_t const rest = met.bits & ~(1u << nearest); rest != 0)
+                stack[top++] = {met.first_node, met.first_leaf, rest | met.leaves << 8, others};
+            at = met.child(nearest);
         }
         if (at == kNoBvhTriangle) return;
         meet_leaf(bvh.leaves[at & ~kIsLeaf], ray, hit, accepts);
         if (any && hit.triangle != kNoBvhTriangle) return;
-        at = pop();
+        at = pop_child<any>(stack, top, hit.distance);
     }
 }
 

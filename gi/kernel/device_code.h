@@ -3,6 +3,7 @@
 
 #include "gi/core/platform.h"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -48,6 +49,16 @@ GI_FN inline float smaller(float a, float b)
     return fminf(a, b);
 #else
     return b < a ? b : a;
+#endif
+}
+
+/// Index of the lowest bit that is set. @param bits  not 0
+GI_FN inline std::uint32_t lowest_bit(std::uint32_t bits)
+{
+#if defined(__CUDA_ARCH__)
+    return std::uint32_t(__ffs(int(bits)) - 1);
+#else
+    return std::uint32_t(std::countr_zero(bits));
 #endif
 }
 

@@ -182,7 +182,10 @@ void check_paths_to_cells()
         double const truth = mean_of(expected, name).mean;
         EXPECT_NEAR(mean_of(found.picture, name).mean, truth, 0.005 * truth) << name;
     }
-    EXPECT_LT(relative_mse(*found.picture.find("color"), *expected.find("color")), 1e-4);
+    std::vector<float> const &a = found.picture.find("color")->data, &b = expected.find("color")->data;
+    std::size_t differ = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) differ += std::abs(a[k] - b[k]) > 0.02f * (std::abs(b[k]) + 0.01f);
+    EXPECT_LE(differ, a.size() / 20);
     // Integer sums are the same whatever the order of threads.
     auto const second = render_paths_by_kernels(S, world, room_camera(), s, {}, {}, again);
     EXPECT_EQ(second.picture.find("color")->data, found.picture.find("color")->data);
@@ -192,7 +195,7 @@ LIGHTWELL_TEST_BOTH(KernelPaths, CellsAsByTheCpuAndTheSameBitsTwice, check_paths
 template <Space S>
 void check_cells_that_grow()
 {
-    KernelCache<S> cache(1, std::size_t(1) << 30);
+    KernelCache<S> cache(1, std::size_t(1) << 30, 1000);
     constexpr std::uint32_t kNotes = 400'000;
     CacheView const view = cache.lend(kNotes);
     std::vector<PathSample> samples(1);

@@ -46,7 +46,7 @@ struct CacheNoteOnWay {
 /// Cells and notes, for paths.
 struct CacheView {
     static constexpr float kWeightSteps = 0x1p20f, kRadianceSteps = 0x1p20f, kSquareSteps = 0x1p16f;
-    static constexpr std::uint32_t kMostProbes = 64;
+    static constexpr std::uint32_t kMostProbes = 256;
 
     View<CacheCell> cells; ///< a power of two; empty = there is no cache
     float unit = 1;        ///< W/(m^2 sr), a power of two

@@ -12,9 +12,11 @@ namespace gi {
 template <Space S>
 class KernelCache {
 public:
-    /// @param radius  of the world, m  @param most_bytes  of the cells
-    KernelCache(float radius, std::size_t most_bytes)
-        : most_cells_(std::max(kFirstCells, std::bit_floor(most_bytes / sizeof(CacheCell)))), shift_(cell_shift(radius))
+    /// @param radius  of the world, m  @param most_bytes  of the cells  @param paths  of a pass
+    KernelCache(float radius, std::size_t most_bytes, std::size_t paths)
+        : most_cells_(std::max(kLeastCells, std::bit_floor(most_bytes / sizeof(CacheCell)))),
+          cells_(std::clamp(std::bit_ceil(2 * paths), kLeastCells, most_cells_)),
+          shift_(cell_shift(radius))
     {
         clear();
     }
@@ -22,7 +24,6 @@ public:
     /// Empties it, as light or geometry has changed.
     void clear()
     {
-        if (cells_.size() == 0) cells_ = Buffer<CacheCell, S>(kFirstCells);
         zero(cells_);
         zero(count_);
         passes_ = 0;
@@ -71,7 +72,7 @@ public:
     std::uint64_t refused() const { return refused_; } ///< notes for which there was no room
 
 private:
-    static constexpr std::size_t kFirstCells = std::size_t(1) << 18; // 16 MiB
+    static constexpr std::size_t kLeastCells = std::size_t(1) << 18; // 16 MiB
 
     template <class T>
     static void zero(Buffer<T, S>& b)
@@ -98,10 +99,10 @@ private:
         unit_ = std::ldexp(1.0f, std::clamp(exponent - 127, -60, 60));
     }
 
+    std::size_t most_cells_;
     Buffer<CacheCell, S> cells_;
     Buffer<std::uint32_t, S> count_{3}; ///< see CacheView
     ColumnBuffer<CacheNoteOnWay, S> notes_;
-    std::size_t most_cells_;
     vec3 shift_;
     float unit_ = 0; ///< 0 = not chosen
     bool empty_ = true;

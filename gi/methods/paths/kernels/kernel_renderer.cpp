@@ -48,7 +48,7 @@ KernelRenderer<S>::KernelRenderer(World const& world, std::span<FrameView const>
     make_axes();
     make_light_points();
     if (free() && settings_.of<PathsSettings>().cache != RadianceCaching::off && settings_.bounces > 0)
-        scene_.use_cache(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20);
+        scene_.use_cache(world.bounds.radius(), std::size_t(slhb_.memory_mib) << 20, pixels());
 }
 
 template <Space S>
@@ -157,9 +157,7 @@ void KernelRenderer<S>::prepare(std::uint32_t index)
     }
     if (free()) {
         light_order_.update(world_);
-        std::size_t pixels = 0;
-        for (View const& v : views_) pixels += v.pixels();
-        lights_.fill(light_order_, world_, LightPool::groups_for(pixels, world_), settings_.seed, index);
+        lights_.fill(light_order_, world_, LightPool::groups_for(pixels(), world_), settings_.seed, index);
         scene_.take_pool(lights_);
     }
     if (first_surfaces_ == FirstSurfaces::by_rays) return;

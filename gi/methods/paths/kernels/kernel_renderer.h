@@ -80,6 +80,12 @@ private:
 
     bool free() const { return settings_.of<PathAlgorithm>().surfaces == SurfacesBy::rays; }
     bool walks() const { return !free() && (settings_.bounces > 0 || meets_light(world_)); }
+    std::size_t pixels() const
+    {
+        std::size_t sum = 0;
+        for (View const& v : views_) sum += v.pixels();
+        return sum;
+    }
     void build_exact();
     void make_axes();
     void make_light_points();

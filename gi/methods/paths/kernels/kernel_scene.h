@@ -143,8 +143,11 @@ public:
         chances_ = upload<S>(std::vector<AliasEntry>(chances.entries.begin(), chances.entries.end()));
     }
 
-    /// @param radius, most_bytes  see KernelCache
-    void use_cache(float radius, std::size_t most_bytes) { cache_.emplace(radius, most_bytes); }
+    /// See KernelCache.
+    void use_cache(float radius, std::size_t most_bytes, std::size_t paths)
+    {
+        cache_.emplace(radius, most_bytes, paths);
+    }
     KernelCache<S>* cache() { return cache_ ? &*cache_ : nullptr; }
 
     /// Sets the light samples of a pass.
