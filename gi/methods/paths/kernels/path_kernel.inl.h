@@ -397,7 +397,13 @@ GI_FN void FurtherSteps<by, last>::operator()(std::size_t i) const
     s.has_position = true;
     s.distance = path.distance;
     s.footprint = path.footprint;
-    if (Own::by_rays && from.queries.load(i).reach > 0) this->meet(s, hits.load(i));
+    bool const is_first = path.vertex == 0; // of the path that a ray of the camera began
+    if (Own::by_rays) {
+        RayQuery const query = from.queries.load(i);
+        if (query.reach > 0) this->meet(s, hits.load(i));
+        if (is_first && s.triangle != kNoPrimitive) // as PathsTracer begins, whose rays find the triangle alone
+            s.barycentric = barycentric_of(this->world.surfaces[s.triangle], query.ray);
+    }
     PathSample out;
     auto const light_last = [&] {
         if (!Own::by_rays || !(s.waiting.query.reach > 0)) return;
@@ -405,7 +411,6 @@ GI_FN void FurtherSteps<by, last>::operator()(std::size_t i) const
         if (left != vec3{0}) add_light(out, s.waiting.scatterings, left * s.waiting.light);
         s.waiting.query = no_query();
     };
-    bool const is_first = path.vertex == 0; // of the path that a ray of the camera began
     auto const step = [&] {
         if (Own::free && !this->cache.cells.empty() && s.vertex > 0) {
             vec3 const before = is_first ? vec3{0} : this->samples[path.pixel].radiance[2];
