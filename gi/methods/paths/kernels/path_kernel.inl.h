@@ -319,14 +319,16 @@ template <FindBy by>
 GI_FN std::uint32_t StepPaths<by>::go_on(std::size_t pixel, State const& s) const
 {
     std::uint32_t const k = atomic_add(next.count[0], 1);
-    next.paths.store(k, {.state = s,
-                         .footprint = s.footprint,
-                         .pixel = std::uint32_t(pixel),
-                         .vertex = s.vertex,
-                         .triangle = s.triangle,
-                         .distance = s.distance,
-                         .position = s.position,
-                         .direction = s.direction});
+    PathOnWay path; // by its members: nvcc 13 cannot read names in braces here
+    path.state = s;
+    path.footprint = s.footprint;
+    path.pixel = std::uint32_t(pixel);
+    path.vertex = s.vertex;
+    path.triangle = s.triangle;
+    path.distance = s.distance;
+    path.position = s.position;
+    path.direction = s.direction;
+    next.paths.store(k, path);
     if (by_rays) next.queries.store(k, s.query);
     return k;
 }
