@@ -43,6 +43,9 @@ bool device_present() { return is_device_simulated() || device::present(); }
 void check_device(Space space)
 {
     if (space == Space::host || is_device_simulated()) return;
+    if (char const* const asked = std::getenv("LIGHTWELL_DEVICE"); asked != nullptr && *asked != '\0')
+        throw InputError("LIGHTWELL_DEVICE=" + std::string(asked) + " in the environment",
+                         "it can only be simulated", "correct it, or unset it");
     if (!kCudaBuild)
         throw InputError("the device cuda cannot be used", "this program was built without CUDA",
                          "build the cuda preset, or choose the device cpu");

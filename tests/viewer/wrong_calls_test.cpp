@@ -289,6 +289,14 @@ TEST(WrongCalls, ADeviceThatIsNotThere)
     EXPECT_TRUE(folder.files().empty());
 }
 
+TEST(WrongCalls, ADeviceThatCannotBeSimulated)
+{
+    TemporaryFolder const folder;
+    setenv("LIGHTWELL_DEVICE", "simulate", 1); // programs inherit it
+    expect_refused("render cornell --device cuda", "LIGHTWELL_DEVICE=simulate", folder.path());
+    unsetenv("LIGHTWELL_DEVICE");
+}
+
 TEST(WrongCalls, ReadOnlyFolder)
 {
     if (geteuid() == 0) GTEST_SKIP() << "SKIPPED: the super-user can write to read-only folders";
