@@ -6,7 +6,7 @@ layout(binding = 3) uniform usampler2DArray slopes; // LightSlope
 
 const int kPictures = 24;
 uniform int pictures, newest_pictures;       // the newest come first
-uniform int light_layers[kPictures];
+uniform int light_layers[kPictures], light_mirrors[kPictures]; // mirrors: in which they show what they do; 0 = none
 uniform vec3 light_eye[kPictures];           // positions of their cameras
 uniform mat3 texel_from_world[kPictures];    // to places in them, times the depth
 uniform ivec2 light_size[kPictures];         // of each picture, texels
@@ -121,7 +121,7 @@ void ask(inout Likes s, int picture, int ring, vec3 at, vec3 n)
         ivec3 texel = ivec3(clamp(p, ivec2(0), size - 1), light_layers[picture]);
         uvec4 t = texelFetch(lights, texel, 0);
         vec3 facing = unpack_normal(t.x);
-        float depth = uintBitsToFloat(t.w & ~7u), off = (dot(facing, from) - uintBitsToFloat(t.y)) / (kOfDepth * max(depth, 1e-30));
+        float depth = (t.w >> 3 & 3u) == uint(light_mirrors[picture]) ? uintBitsToFloat(t.w & ~31u) : 0.0, off = (dot(facing, from) - uintBitsToFloat(t.y)) / (kOfDepth * max(depth, 1e-30));
         float cosine = max(0.0, dot(facing, n)), c2 = cosine * cosine, c4 = c2 * c2, like = c4 * c4 / (1.0 + off * off * off * off);
         w = there && depth > 0.0 ? w * trust * (like + kLeast) : 0.0;
         like *= trust;

@@ -23,16 +23,6 @@ constexpr float kBrightest = 8;
 /// What is farther behind a plane than this share of a cell's width is hidden by it.
 constexpr float kOfWidth = 0.1f;
 
-vec3 unpacked_normal(std::uint32_t bits)
-{
-    vec2 const o = glm::unpackSnorm2x16(bits);
-    vec3 n{o.x, o.y, 1 - std::abs(o.x) - std::abs(o.y)};
-    float const fold = std::max(-n.z, 0.0f);
-    n.x -= n.x < 0 ? -fold : fold;
-    n.y -= n.y < 0 ? -fold : fold;
-    return glm::normalize(n);
-}
-
 int side_of(vec3 n)
 {
     vec3 const a = glm::abs(n);
@@ -114,10 +104,11 @@ void LightCells::find_hidden(LightPicture const& light, CameraRays const& rays)
         if (!(p.z > 0) || !(at.x >= 0 && at.y >= 0 && at.x < float(light.width) && at.y < float(light.height)))
             continue;
         LightTexel const& t = light.texels[std::size_t(at.y) * std::size_t(light.width) + std::size_t(at.x)];
-        float const depth = std::bit_cast<float>(t.depth_dark & ~7u),
+        if (!has_surface(t) || mirror_of(t) != 0) continue;
+        float const depth = depth_of(t),
                     before = glm::dot(unpacked_normal(t.normal), c.place - rays.origin) - t.plane_m;
         // What is no longer hidden, learns.
-        c.hidden |= t.depth_dark > 7 && p.z > depth && before < -(kOfDepth * depth + kOfWidth * c.width);
+        c.hidden |= p.z > depth && before < -(kOfDepth * depth + kOfWidth * c.width);
     }
 }
 
@@ -136,14 +127,15 @@ void LightCells::learn(LightPicture const& light, std::size_t most, dvec3 origin
                       first = pictures_ % step;
     for (std::size_t i = first; i < light.texels.size(); i += step) {
         LightTexel const& t = light.texels[i];
-        if (t.depth_dark <= 7) continue;
+        if (!has_surface(t) || mirror_of(t) > light.mirrors.size()) continue;
         if (used_ + LightCellTable::kLevels > kMostCells) forget_oldest();
         vec2 const place =
             (vec2{float(i % std::size_t(light.width)), float(i / std::size_t(light.width))} + light.at) /
             light.texels_per_pixel;
         Ray const ray = rays.through(place);
-        float const depth = std::bit_cast<float>(t.depth_dark & ~7u);
-        vec3 const position = ray.origin + ray.direction * (depth / glm::dot(ray.direction, rays.forward));
+        float const depth = depth_of(t);
+        vec3 position = ray.origin + ray.direction * (depth / glm::dot(ray.direction, rays.forward));
+        if (auto const m = mirror_of(t); m != 0) position = reflected(light.mirrors[m - 1], position);
         vec3 const found = glm::min(glm::unpackF3x9_E1x5(t.light), kBrightest * light.mean);
         int const side = side_of(unpacked_normal(t.normal));
         vec3 known;

@@ -2,7 +2,6 @@
 
 #include "gi/filter/filter_input.h"
 
-#include <bit>
 #include <glm/gtc/packing.hpp>
 
 namespace gi {
@@ -28,7 +27,17 @@ std::uint32_t packed_light(vec3 light) { return glm::packF3x9_E1x5(glm::max(ligh
 LightTexel light_texel(vec3 position, vec3 normal, vec3 light, unsigned dark, float depth)
 {
     return {packed_normal(normal), glm::dot(normal, position), packed_light(light),
-            (std::bit_cast<std::uint32_t>(depth) & ~7u) | dark};
+            (std::bit_cast<std::uint32_t>(depth) & ~(kDarkBits | kPictureMirrors << kMirrorShift)) | dark};
+}
+
+vec3 unpacked_normal(std::uint32_t bits)
+{
+    vec2 const o = glm::unpackSnorm2x16(bits);
+    vec3 n{o.x, o.y, 1 - std::abs(o.x) - std::abs(o.y)};
+    float const fold = std::max(-n.z, 0.0f);
+    n.x -= n.x < 0 ? -fold : fold;
+    n.y -= n.y < 0 ? -fold : fold;
+    return glm::normalize(n);
 }
 
 LightSlope light_slope(vec3 mean_normal, vec3 slope)
@@ -41,6 +50,21 @@ LightSlope light_slope(vec3 mean_normal, vec3 slope)
     return s;
 }
 
+void make_image(LightPicture& light, std::size_t texel, std::uint32_t mirror)
+{
+    mat3 const reflect = reflection(light.mirrors[mirror - 1]);
+    LightTexel& t = light.texels[texel];
+    if (!has_surface(t)) return;
+    t.normal = packed_normal(reflect * unpacked_normal(t.normal));
+    t.depth_dark |= mirror << kMirrorShift;
+    if (light.slopes.empty()) return;
+    LightSlope& s = light.slopes[texel];
+    if (s.slope == 0) return;
+    vec3 slope;
+    for (int c = 0; c < 3; ++c) slope[c] = kSlopeStep * (float(s.slope >> (10 * c) & 1023) - 512);
+    s = light_slope(reflect * unpacked_normal(s.mean_normal), reflect * slope);
+}
+
 void find_mean(LightPicture& light)
 {
     constexpr std::size_t kStep = 17;
@@ -48,7 +72,7 @@ void find_mean(LightPicture& light)
     for (std::size_t i = 0; i < light.texels.size(); i += kStep) {
         LightTexel const& t = light.texels[i];
         vec3 const l = glm::unpackF3x9_E1x5(t.light);
-        for (int c = 0; c < 3 && t.depth_dark > 7; ++c)
+        for (int c = 0; c < 3 && has_surface(t); ++c)
             if ((t.depth_dark >> c & 1) == 0) {
                 sum[c] += l[c];
                 count[c] += 1;

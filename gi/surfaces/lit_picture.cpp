@@ -124,7 +124,7 @@ MirrorLayers describe_mirrored(SeenSurfaces const& seen, CameraRays const& now, 
             kept.pixels.push_back(std::uint32_t(i));
             kept.layers.push_back({rgb(*albedo, i), rgb(*normal, i), rgb(*position, i)});
             kept.depths.push_back(depth->data[i]);
-            if (s.is_image) kept.images.push_back(std::uint32_t(i));
+            if (s.is_image) kept.images.push_back({std::uint32_t(i), s.is_reflected, rgb(*position, i)});
             put(*albedo, i, s.albedo);
             put(*normal, i, s.normal);
             put(*position, i, vec3(dvec3(s.position) + origin));

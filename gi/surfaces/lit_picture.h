@@ -26,12 +26,19 @@ Picture lit_picture(SeenSurfaces const& seen, int width, int height, KeptLight c
 Picture mirror_picture(SeenSurfaces const& seen, PixelBox const& part, int width, int height,
                        KeptLight const& light, Picture const& of_light);
 
+/// A pixel whose surface is elsewhere: SeenSurface::is_image.
+struct SeenImage {
+    std::uint32_t pixel = 0;
+    bool is_reflected = false;
+    vec3 mirror{0}; ///< place of the mirror or pane, m
+};
+
 /// Layers of a method's picture for pixels that show a mirror or a pane.
 struct MirrorLayers {
     std::vector<std::uint32_t> pixels;
     std::vector<std::array<vec3, 3>> layers; ///< albedo, normal, position
     std::vector<float> depths;
-    std::vector<std::uint32_t> images; ///< pixels whose surface is elsewhere: SeenSurface::is_image
+    std::vector<SeenImage> images;
 };
 
 /// Replaces albedo, normal, position, depth and motion of pixels that show a mirror or a pane by those of what is

@@ -104,6 +104,44 @@ void PlanarMirrors::take(ShownScene const& scene)
     if (!left_out.empty()) others_.push_back(left_out);
 }
 
+void PlanarMirrors::keep_images(LightPicture& light, std::span<SeenImage const> images, dvec3 origin) const
+{
+    // Places of mirrors in pictures are rounded.
+    float const near = 2 * flat_m_ + 1e-6f * float(glm::length(origin));
+    std::vector<std::size_t> in(images.size(), mirrors_.size()), pixels(mirrors_.size(), 0);
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (!images[i].is_reflected) continue;
+        vec3 const place(dvec3(images[i].mirror) - origin);
+        float nearest = near;
+        for (std::size_t k = 0; k < mirrors_.size(); ++k) {
+            PlanarMirror const& m = mirrors_[k];
+            bool const beside = glm::any(glm::lessThan(place, m.bounds.low - near)) ||
+                                glm::any(glm::greaterThan(place, m.bounds.high + near));
+            float const off = std::abs(glm::dot(m.normal, place) - m.distance_m);
+            if (beside || !(off < nearest)) continue;
+            nearest = off;
+            in[i] = k;
+        }
+        if (in[i] < mirrors_.size()) ++pixels[in[i]];
+    }
+    std::vector<std::uint32_t> numbers(mirrors_.size() + 1, 0);
+    light.mirrors.clear();
+    for (std::uint32_t number = 1; number <= kPictureMirrors && !mirrors_.empty(); ++number) {
+        auto const most = std::ranges::max_element(pixels);
+        if (*most == 0) break;
+        auto const k = std::size_t(most - pixels.begin());
+        *most = 0;
+        numbers[k] = number;
+        light.mirrors.push_back(mirrors_[k]);
+    }
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        if (numbers[in[i]] != 0)
+            make_image(light, images[i].pixel, numbers[in[i]]);
+        else
+            light.texels[images[i].pixel] = {};
+    }
+}
+
 PixelBox PlanarMirrors::left_out(CameraRays const& camera, int width, int height) const
 {
     if (is_bent_) return {{0, 0}, {width, height}};

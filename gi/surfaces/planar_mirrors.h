@@ -2,6 +2,7 @@
 // Flat mirrors of a scene: what they show is drawn as geometry, for the newest pose, as all else. What other mirrors and
 // panes show is in rendered pictures alone.
 
+#include "gi/surfaces/lit_picture.h"
 #include "gi/surfaces/mirror_boxes.h"
 #include "gi/surfaces/shown_scene.h"
 
@@ -9,10 +10,8 @@
 
 namespace gi {
 
-struct PlanarMirror {
-    vec3 normal{0};       ///< unit
-    float distance_m = 0; ///< dot(normal, place) of its places, which count from the world's origin
-    Bounds bounds;        ///< of its triangles
+struct PlanarMirror : MirrorPlane {
+    Bounds bounds; ///< of its triangles
     float area_m2 = 0;
 };
 
@@ -26,6 +25,8 @@ public:
     static constexpr std::size_t kMostDrawn = 2; ///< of those in a picture, the largest
     /// Of the scene's radius: what is so far from a mirror's plane is no part of it.
     static constexpr float kFlat = 4e-4f;
+    /// Keeps what a picture of light shows in some of these mirrors, as light of the surfaces where they are; removes other images.
+    void keep_images(LightPicture& light, std::span<SeenImage const> images, dvec3 origin) const;
     /// Pixels that may show mirrors or panes that are not drawn. @param width, height  px
     PixelBox left_out(CameraRays const& camera, int width, int height) const;
 

@@ -224,6 +224,7 @@ bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way,
     out.depth = glm::dot(out.position - camera_.origin, camera_.forward);
     out.in_mirror = way.mirrors > 0;
     out.is_image = out.in_mirror && glm::length(out.position - at.position) > kOfDepth * way.length_m;
+    out.is_reflected = way.mirrors == 1 && way.image != mat3{1};
     if (triangle >= earlier_.first_moving && !earlier_.corners.empty())
         out.moved =
             way.image * (at.position - point_on(earlier_.corners[triangle - earlier_.first_moving], weights));

@@ -29,6 +29,7 @@ struct SeenSurface {
     std::uint8_t lit = 0, blocked = 0; ///< bits of lights that reach it or would, by shadow rays of its own
     bool in_mirror = false;            ///< or behind a pane
     bool is_image = false; ///< it is not where it seems to be: mirrored, or refracted by more than a thin pane
+    bool is_reflected = false; ///< by one mirror, and nothing else was on the way
 };
 
 class SeenSurfaces {

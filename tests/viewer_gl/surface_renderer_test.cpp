@@ -89,8 +89,8 @@ protected:
     vec3 light(vec3 p) const { return bright_ * light_at(vec3(dvec3(p) + w().origin - far_)); }
 
     /// What the camera sees, lit by light_at and punctual lights; its light without these, if asked for.
-    gi::Picture exact(gi::Camera const& camera, gi::LightPicture* found = nullptr,
-                      gi::World const* of = nullptr) const
+    gi::Picture exact(gi::Camera const& camera, gi::LightPicture* found = nullptr, gi::World const* of = nullptr,
+                      bool images = false) const
     {
         gi::SeenSurfaces seen(of ? *of : w(), 0);
         gi::CameraRays const rays = gi::camera_rays(camera, kSize.x, kSize.y, w().origin);
@@ -99,6 +99,7 @@ protected:
         for (char const* name : {"L1", "L2", "albedo", "normal", "position", "color"}) p.add(name, 3);
         p.add("depth", 1);
         std::vector<gi::SeenSurface> row(std::size_t(kSize.x));
+        std::vector<gi::SeenImage> in_mirror;
         for (int y = 0; y < kSize.y; ++y) {
             seen.row(y, row);
             for (int x = 0; x < kSize.x; ++x) {
@@ -114,7 +115,12 @@ protected:
                 };
                 put("L1", l);
                 put("albedo", s.albedo);
-                put("normal", s.in_mirror ? vec3{0} : s.normal);
+                put("normal", s.in_mirror && !images ? vec3{0} : s.normal);
+                if (images && s.is_image) {
+                    gi::Ray const ray = rays.through(vec2(x, y) + 0.5f);
+                    vec3 const at = ray.origin + (plane - ray.origin.x) / ray.direction.x * ray.direction;
+                    in_mirror.push_back({std::uint32_t(i), s.is_reflected, vec3(dvec3(at) + w().origin)});
+                }
                 put("position", vec3(dvec3(s.position) + w().origin));
                 put("color", s.emitted + s.direct + l);
                 p.find("depth")->data[i] = s.depth;
@@ -122,6 +128,11 @@ protected:
         }
         if (found) *found = gi::light_picture(p, camera, std::size_t(kSize.x * kSize.y));
         if (found) found->without_punctual = true;
+        if (found && images) {
+            gi::PlanarMirrors mirrors;
+            mirrors.take(*shown);
+            mirrors.keep_images(*found, in_mirror, w().origin);
+        }
         return p;
     }
 
@@ -459,6 +470,33 @@ TEST_F(SurfaceRendererTest, FlatMirrorsShowWhatIsBeforeThemNow)
         double const share = differing(drawn(renderer, now, last, of), truth.find("color")->data, 8);
         RecordProperty(far > 0 ? "far" : "near", std::to_string(share));
         EXPECT_LT(share, far > 0 ? 0.05 : 0.03);
+    }
+}
+
+TEST_F(SurfaceRendererTest, WhatFlatMirrorsShowIsLitByPicturesOfIt)
+{
+    for (double const far : {0.0, 4e4}) {
+        load({far, 0, -far}, {}, true);
+        gi::Camera const of = gi::look_at(dvec3(-0.3, 0.5, 1.3) + far_, dvec3(-2, 0, -0.3) + far_, 60),
+                         now = gi::look_at(dvec3(-0.35, 0.55, 1.25) + far_, dvec3(-2, 0, -0.3) + far_, 58);
+        gi::LightPicture found, nothing_in_mirrors;
+        gi::Picture const last = exact(of, &found, nullptr, true), truth = exact(now, &nothing_in_mirrors);
+        EXPECT_EQ(found.mirrors.size(), 1u);
+        auto const from_nowhere = [&](gi::LightPicture const& light) {
+            SurfaceRenderer renderer;
+            start(renderer, light);
+            double const share = differing(drawn(renderer, now, last, of), truth.find("color")->data, 4);
+            auto const sources = renderer.light_sources(0).sources;
+            return std::pair(share,
+                             double(std::ranges::count(sources, LightSource::nowhere)) / double(sources.size()));
+        };
+        auto const [share, unlit] = from_nowhere(found);
+        auto const [share_without, unlit_without] = from_nowhere(nothing_in_mirrors);
+        RecordProperty(far > 0 ? "far" : "near", std::to_string(share) + " " + std::to_string(unlit));
+        EXPECT_LT(share, 0.02);
+        EXPECT_LT(unlit, 0.02);
+        EXPECT_GT(share_without, share + 0.02);
+        EXPECT_GT(unlit_without, unlit + 0.02);
     }
 }
 

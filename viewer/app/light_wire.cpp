@@ -14,7 +14,7 @@ struct LightHeader {
     gi::vec2 at{0};
     gi::vec3 mean{0};
     std::uint64_t lamps = 0;
-    std::uint8_t without_punctual = 0, has_slopes = 0;
+    std::uint8_t without_punctual = 0, has_slopes = 0, mirrors = 0;
 };
 
 struct CellsHeader {
@@ -50,9 +50,10 @@ std::vector<std::uint8_t> to_bytes(FrameLight const& light)
         gi::LightPicture const& l = *light.views[k];
         out.put(LightHeader{std::uint32_t(k), l.width, l.height, l.camera_width, l.camera_height,
                             l.texels_per_pixel, l.at, l.mean, l.lamps, std::uint8_t(l.without_punctual),
-                            std::uint8_t(!l.slopes.empty())});
+                            std::uint8_t(!l.slopes.empty()), std::uint8_t(l.mirrors.size())});
         put(out, l.texels);
         put(out, l.slopes);
+        put(out, l.mirrors);
     }
     out.put(std::uint8_t(light.cells != nullptr));
     if (!light.cells) return out.take();
@@ -89,6 +90,8 @@ void add_light(std::span<std::uint8_t const> bytes, FrameCommand const& command,
         get(in, light->texels);
         if (h.has_slopes != 0) light->slopes.resize(std::size_t(texels));
         get(in, light->slopes);
+        light->mirrors.resize(h.mirrors);
+        get(in, light->mirrors);
         to.views[h.view] = std::move(light);
     }
     if (in.get<std::uint8_t>() == 0) return;

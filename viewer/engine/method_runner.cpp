@@ -236,14 +236,6 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
     return results;
 }
 
-gi::LightPicture MethodRunner::light_of_places(std::size_t view) const
-{
-    gi::LightPicture light = state_.seen[view].light->picture();
-    for (std::uint32_t const pixel : images_[view]) light.texels[pixel] = {};
-    gi::find_mean(light);
-    return light;
-}
-
 /// Makes the views of this frame those that are seen.
 void MethodRunner::follow(FrameCommand const& command, std::span<HiddenPixels const> hidden,
                           std::span<Next const> next, Settings const& settings)

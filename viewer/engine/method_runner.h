@@ -43,8 +43,8 @@ public:
     bool left_out_punctual() const { return left_out_punctual_; }
     /// Light of a view of the last frame; null without `seen`.
     gi::KeptLight const* light(std::size_t view) const { return state_.seen[view].light.get(); }
-    /// The same for surfaces where they are: without images in mirrors and glass.
-    gi::LightPicture light_of_places(std::size_t view) const;
+    /// Its pixels that show images in mirrors and glass.
+    std::span<gi::SeenImage const> images(std::size_t view) const { return images_[view]; }
     /// Unfiltered light of the further view of the last frame; empty without.
     gi::LightPicture const& light_around() const { return around_; }
     int still_frames() const { return state_.still; }
@@ -108,8 +108,7 @@ private:
     gi::dvec3 origin_; ///< of the world
     std::unique_ptr<gi::FrameRenderer> renderer_;
     State state_;
-    std::vector<std::vector<std::uint32_t>>
-        images_; ///< per view: pixels of its light that show images in mirrors and glass
+    std::vector<std::vector<gi::SeenImage>> images_; ///< per view
     gi::LightPicture around_;
     bool first_ = true, left_out_punctual_ = false;
     bool ahead_;

@@ -297,7 +297,9 @@ void RenderSession::learn_light(FrameCommand const& light, SessionFrame& frame)
     if (!cells_) cells_.emplace(world_->world().bounds.radius());
     for (std::size_t k = 0; k < light.views.size(); ++k) {
         ViewCommand const& v = light.views[k];
-        auto found = std::make_shared<gi::LightPicture>(main_->light_of_places(k));
+        auto found = std::make_shared<gi::LightPicture>(main_->light(k)->picture());
+        flat_mirrors_.keep_images(*found, main_->images(k), world_->world().origin);
+        gi::find_mean(*found);
         found->without_punctual = main_->left_out_punctual();
         found->lamps = lamps_;
         found->camera = v.camera;

@@ -83,6 +83,7 @@ void LightRing::add(LightOfView const& of, gi::dvec3 origin)
     next.at = light.at;
     next.size = {light.width, light.height};
     next.without_punctual = light.without_punctual;
+    next.mirrors = light.mirrors;
     entries_.push_back(next);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTextureSubImage3D(texels_.id(), 0, 0, 0, next.layer, light.width, light.height, 1, GL_RGBA_INTEGER,
@@ -150,6 +151,17 @@ float LightRing::gap_without(Entry const& picture) const
     return kPer_m * glm::distance(older->eye, newer->eye) + kPerTurn * glm::distance(axis(*older), axis(*newer));
 }
 
+/// What a picture shows in a mirror, as a picture from behind it.
+LightRing::Entry LightRing::from_behind(Entry const& picture, std::uint32_t mirror)
+{
+    gi::MirrorPlane const& plane = picture.mirrors[mirror - 1];
+    Entry behind = picture;
+    behind.mirror = mirror;
+    behind.eye = gi::reflected(plane, picture.eye);
+    behind.texel_from_world = picture.texel_from_world * gi::reflection(plane);
+    return behind;
+}
+
 /// False if nothing that is seen can lie in the picture: all of it is beyond one of the picture's edges.
 bool LightRing::may_show(Entry const& picture, SeenPart const& seen)
 {
@@ -173,18 +185,26 @@ glm::vec3 LightRing::axis(Entry const& picture)
     return glm::normalize(glm::inverse(picture.texel_from_world) * middle);
 }
 
-/// The newest of all views, those of the same head first, then older ones.
+/// The newest of all views, those of the same head first, then older ones. For what a mirror shows, first those from behind
+/// the same one.
 std::vector<LightRing::Entry> LightRing::asked_by(int head, SeenPart const& seen) const
 {
     std::vector<Entry> asked;
-    std::ranges::copy_if(entries_, std::back_inserter(asked), [&](Entry const& e) { return may_show(e, seen); });
+    for (Entry const& e : entries_) {
+        if (may_show(e, seen)) asked.push_back(e);
+        for (std::uint32_t m = 1; m <= e.mirrors.size() && e.age < kNewest; ++m)
+            if (Entry behind = from_behind(e, m); may_show(behind, seen)) asked.push_back(std::move(behind));
+    }
     if (asked.size() > std::size_t(kPictures)) { // those that look the same way
         glm::vec3 middle(0);
         for (glm::vec3 const edge : seen.edges) middle += glm::normalize(edge);
         std::ranges::sort(asked, {}, [&](Entry const& e) { return std::pair(e.age, -glm::dot(axis(e), middle)); });
         asked.resize(std::size_t(kPictures));
     }
-    std::ranges::sort(asked, {}, [&](Entry const& e) { return std::tuple(e.age, e.head != head, e.view); });
+    std::ranges::sort(asked, {}, [&](Entry const& e) {
+        float const apart = e.mirror > 0 ? glm::distance(e.eye, seen.eye) : 0;
+        return std::tuple(e.age, e.head != head, (e.mirror > 0) != seen.in_mirror, apart, e.view);
+    });
     return asked;
 }
 
@@ -202,8 +222,9 @@ void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) c
     program.set("narrowest_cell", known_ ? known_->narrowest_m : 0.0f);
     program.set("cells_lack_punctual", known_ && known_->without_punctual ? 1.0f : 0.0f);
     glBindTextureUnit(14, cells_.id());
-    auto const before =
-        std::ranges::find_if(asked, [&](Entry const& e) { return e.age == 1 && e.view == asked.front().view; });
+    auto const before = std::ranges::find_if(asked, [&](Entry const& e) {
+        return e.age == 1 && e.view == asked.front().view && e.mirror == asked.front().mirror;
+    });
     program.set("light_before", before == asked.end() ? -1 : int(before - asked.begin()));
     program.set("share", share_);
     program.set("mean_light", mean_);
@@ -212,6 +233,7 @@ void LightRing::bind(GlProgram const& program, int head, SeenPart const& seen) c
     for (std::size_t k = 0; k < asked.size(); ++k) {
         std::string const of = "[" + std::to_string(k) + "]";
         program.set(("light_layers" + of).c_str(), asked[k].layer);
+        program.set(("light_mirrors" + of).c_str(), int(asked[k].mirror));
         program.set(("light_eye" + of).c_str(), asked[k].eye);
         program.set(("texel_from_world" + of).c_str(), asked[k].texel_from_world);
         program.set(("light_size" + of).c_str(), asked[k].size);

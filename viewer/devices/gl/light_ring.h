@@ -1,6 +1,6 @@
 #pragma once
 // The newest pictures of light on the GPU (gi/surfaces/light_picture.h), of all views: what one does not show, another or
-// an older one may. All views of a head ask them in the same order, so that both eyes see a place in the same light, and
+// an older one may; what a picture shows in flat mirrors counts as pictures from behind them. All views of a head ask them in the same order, so that both eyes see a place in the same light, and
 // so do two walls that meet there.
 
 #include "gi/scene/model/world.h"
@@ -24,6 +24,7 @@ struct SeenPart {
     glm::vec3 eye{0};                 ///< from the world's origin, m
     std::array<glm::vec3, 4> edges{}; ///< directions of the picture's corners from there
     gi::Bounds moved;                 ///< and places in this box
+    bool in_mirror = false;           ///< `eye` is behind the mirror
 };
 
 class LightRing {
@@ -51,13 +52,16 @@ private:
     static constexpr int kNewest = 2; ///< pictures of a view that are always kept
     struct Entry {
         int view = 0, head = 0, layer = 0;
+        std::uint32_t mirror = 0; ///< in which it shows what it does, LightTexel; 0 = none
         int age = 0; ///< newer pictures of the view
         glm::vec3 eye{0};
         glm::mat3 texel_from_world{1};
         glm::vec2 at{0.5f};
         glm::ivec2 size{};
         bool without_punctual = false;
+        std::vector<gi::MirrorPlane> mirrors; ///< that it shows
     };
+    static Entry from_behind(Entry const& picture, std::uint32_t mirror);
     static bool may_show(Entry const& picture, SeenPart const& seen);
     static glm::vec3 axis(Entry const& picture);
     float gap_without(Entry const& picture) const;

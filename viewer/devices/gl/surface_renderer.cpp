@@ -251,7 +251,7 @@ float SurfaceRenderer::nearest_m() const
 void SurfaceRenderer::bind_light(GlProgram const& program, Eye const& eye) const
 {
     glm::mat3 const world_from_clip = glm::inverse(eye.clip_from_world);
-    SeenPart seen{eye.at, {}, meshes_.moved_bounds()};
+    SeenPart seen{eye.at, {}, meshes_.moved_bounds(), eye.in_mirror};
     for (std::size_t k = 0; k < seen.edges.size(); ++k)
         seen.edges[k] = world_from_clip * glm::vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, 1);
     ring_.bind(program, eye.head, seen);
@@ -446,6 +446,7 @@ void SurfaceRenderer::draw_mirrors(Eye const& eye, Target const& to, glm::ivec2 
         glDisable(GL_CLIP_DISTANCE0);
         glBindFramebuffer(GL_FRAMEBUFFER, to.color->target().framebuffer);
         glBindTextureUnit(0, mirror_image_.color->shown().texture);
+        glBindTextureUnit(15, mirror_image_.found->shown().texture);
         glDepthFunc(GL_EQUAL);
         draw_batches(Pass::planar, eye);
         glDisable(GL_SCISSOR_TEST);
@@ -491,9 +492,19 @@ LightSources SurfaceRenderer::light_sources(int view) const
     std::vector<glm::uvec4> words(s.sources.size());
     glGetTextureImage(found.texture, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
                       GLsizei(words.size() * sizeof(glm::uvec4)), words.data());
-    std::ranges::transform(words, s.sources.begin(), [](glm::uvec4 w) {
-        return (w.w & ~3u) == 0 ? LightSource::no_surface : LightSource(w.z >> 30); // as surface_found.frag
-    });
+    glm::ivec2 const size = at->second.color->shown().size_px;
+    std::vector<float> alphas(std::size_t(size.x * size.y));
+    glGetTextureImage(at->second.color->shown().texture, 0, GL_ALPHA, GL_FLOAT,
+                      GLsizei(alphas.size() * sizeof(float)), alphas.data());
+    constexpr float kOfMirrors = 2; // surface_mirror.frag adds it
+    for (std::size_t k = 0; k < words.size(); ++k) {
+        std::size_t const width = std::size_t(found.size_px.x);
+        float const alpha = alphas[2 * (k / width) * std::size_t(size.x) + 2 * (k % width)];
+        glm::uvec4 const w = words[k];
+        s.sources[k] = alpha >= kOfMirrors ? LightSource(int(alpha - kOfMirrors + 0.5f))
+                       : (w.w & ~3u) == 0  ? LightSource::no_surface
+                                           : LightSource(w.z >> 30); // as surface_found.frag
+    }
     return s;
 }
 
