@@ -112,14 +112,15 @@ std::string test_name(testing::TestParamInfo<char const*> const& of)
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Examples,
-                         testing::Values("", "render", "compare", "info", "generate", "display", "study",
-                                         "study simulate", "study rebuild", "study export", "study analyze",
-                                         "study report", "study power", "bench", "bench sweep", "bench pictures",
-                                         "bench report", "bench shown", "bench views", "bench schedules",
-                                         "bench raster", "bench rays", "bench accuracy", "bench thesis", "track",
-                                         "track listen", "track send", "track walk", "ar", "ar synthesize",
-                                         "ar run", "ar track", "ar bench", "ar cameras", "ar record", "ar replay",
-                                         "ar board", "ar calibrate", "ar map", "ar albedo", "ar light", "batch"),
+                         testing::Values("", "render", "compare", "denoise", "info", "generate", "display",
+                                         "study", "study simulate", "study rebuild", "study export",
+                                         "study analyze", "study report", "study power", "bench", "bench sweep",
+                                         "bench pictures", "bench report", "bench shown", "bench views",
+                                         "bench schedules", "bench raster", "bench rays", "bench accuracy",
+                                         "bench thesis", "track", "track listen", "track send", "track walk", "ar",
+                                         "ar synthesize", "ar run", "ar track", "ar bench", "ar cameras",
+                                         "ar record", "ar replay", "ar board", "ar calibrate", "ar map",
+                                         "ar albedo", "ar light", "batch"),
                          test_name);
 
 /// A newcomer's hour: what the README and the documents say, in this order, in one folder.

@@ -15,6 +15,7 @@ constexpr CommandRow kCommands[]{
     {"render", kRender, "Render a scene to a picture with an error estimate."},
     {"view", kView, "Walk through a scene: window, stereo, recording, remote control."},
     {"compare", kRender, "Measure the error of a picture against a reference."},
+    {"denoise", kRender, "Filter a picture that was saved without a filter."},
     {"info", kRender, "Show what a scene contains and what will be built for it, and why."},
     {"generate", kRender, "Generate a built-in scene or a sky and save it."},
     {"recording", kView, "Inspect or export a recorded walk."},

@@ -10,6 +10,7 @@ namespace viewer {
 void add_render(CLI::App& app, int& exit_code);
 void add_view(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
+void add_denoise(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_generate(CLI::App& app, int& exit_code);
 void add_recording(CLI::App& app, int& exit_code);

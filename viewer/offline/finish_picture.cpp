@@ -50,6 +50,15 @@ std::pair<gi::Layer, gi::Layer> without_alpha(gi::Layer const& joined)
 
 } // namespace
 
+void split_alpha(gi::Picture& picture)
+{
+    gi::Layer* const joined = picture.find("color");
+    if (joined == nullptr || joined->channels != 4) return;
+    auto [color, alpha] = without_alpha(*joined);
+    *joined = std::move(color);
+    picture.layers.push_back(std::move(alpha));
+}
+
 void keep_layers(RenderOptions const& o, gi::Picture& picture)
 {
     join_alpha(picture);

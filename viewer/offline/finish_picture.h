@@ -8,6 +8,8 @@ namespace viewer {
 
 /// Filters the picture. @return note to the user; empty = none
 std::string denoise(gi::Picture& picture, gi::DenoiseSettings const& settings, gi::Report& report);
+/// Makes the fourth channel of color, as files have it, the layer alpha.
+void split_alpha(gi::Picture& picture);
 /// Keeps only color (with alpha, if any) and the requested layers.
 void keep_layers(RenderOptions const& options, gi::Picture& picture);
 void save_exr(RenderOptions const& options, std::string const& file, gi::PictureRows const& picture,

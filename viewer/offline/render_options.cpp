@@ -167,6 +167,16 @@ void declare_denoise(CLI::App& c, RenderOptions& o)
         ->capture_default_str();
 }
 
+void declare_pixels(CLI::App& c, RenderOptions& o, std::string const& shown)
+{
+    c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
+    c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
+    c.add_option("--exposure", o.exposure_ev, "in stops, for " + shown)->check(in_range(-100, 100));
+    c.add_option("--tone", o.tone, "tone curve, for " + shown)
+        ->check(CLI::IsMember({"srgb", "filmic"}))
+        ->capture_default_str();
+}
+
 CLI::Option* declare_option(CLI::App& c, gi::RenderSettings& settings, std::string_view name)
 {
     gi::RenderOption const& o = gi::render_option(name);
@@ -246,12 +256,7 @@ void declare_options(CLI::App& c, RenderOptions& o)
     declare_option(c, o.settings, "seed");
     declare_option(c, o.settings, "threads");
     c.add_option("-o,--out", o.out, "EXR file for all layers, .exr (default: the scene's name)");
-    c.add_flag("--half", o.half, "16-bit floats for layers for which they suffice");
-    c.add_option("--png", o.png, "PNG file for the tone-mapped picture, .png");
-    c.add_option("--exposure", o.exposure_ev, "in stops, for --png and --video")->check(in_range(-100, 100));
-    c.add_option("--tone", o.tone, "tone curve, for --png and --video")
-        ->check(CLI::IsMember({"srgb", "filmic"}))
-        ->capture_default_str();
+    declare_pixels(c, o, "--png and --video");
     c.add_option("--aovs", o.layers,
                  fmt::format("layers to save beside color, e.g. L0,L1, of: {}", fmt::join(kLayers, ", ")))
         ->delimiter(',')

@@ -45,6 +45,8 @@ void declare_lens_options(CLI::App& command, RenderOptions& options);
 /// Options of the eyes of a stereo pair.
 void declare_eye_options(CLI::App& command, RenderOptions& options);
 void declare_denoise(CLI::App& command, RenderOptions& options);
+/// Options of how pixels are stored and shown. @param shown  the options that write tone-mapped pictures
+void declare_pixels(CLI::App& command, RenderOptions& options, std::string const& shown);
 /// Declares one option of gi::render_options(), with its default. The text goes to `settings`.
 CLI::Option* declare_option(CLI::App& command, gi::RenderSettings& settings, std::string_view name);
 /// Declares the options that one of the methods reads, but for those of all methods. @param methods  empty = all
