@@ -9,6 +9,7 @@
 #include <cstring>
 #include <new>
 #include <string_view>
+#include <unistd.h>
 
 namespace gi {
 namespace {
@@ -21,6 +22,7 @@ bool is_host(Space space) { return space == Space::host || is_device_simulated()
 #if !defined(LIGHTWELL_CUDA_BUILD)
 namespace device {
 bool present() { return false; }
+std::size_t memory() { throw_no_cuda("device memory"); }
 void* allocate(std::size_t) { throw_no_cuda("device memory"); }
 void release(void*) noexcept {}
 void fill(void*, unsigned char, std::size_t) { throw_no_cuda("device memory"); }
@@ -52,6 +54,12 @@ void check_device(Space space)
     if (!device_present())
         throw InputError("the device cuda cannot be used", "no CUDA device is present",
                          "run on a machine with one and its driver, or choose the device cpu");
+}
+
+std::size_t memory_bytes(Space space)
+{
+    if (!is_host(space)) return device::memory();
+    return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE));
 }
 
 void* allocate_bytes(Space space, std::size_t bytes)

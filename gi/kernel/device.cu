@@ -3,13 +3,15 @@
 #include "gi/kernel/device_memory.h"
 #include "gi/kernel/launch.cuh"
 
+#include <new>
+
 namespace gi {
 
 namespace device {
 namespace {
 
 /// Whether freed memory is kept for later buffers: a frame allocates hundreds, and without a pool each waits for
-/// the driver. What exceeds kKept goes back at the next launch.
+/// the driver. What exceeds kKept goes back at the next wait.
 bool has_pool()
 {
     static bool const pool = [] {
@@ -36,11 +38,22 @@ bool present()
     return cudaGetDeviceCount(&count) == cudaSuccess && count > 0;
 }
 
+std::size_t memory()
+{
+    std::size_t free = 0, all = 0;
+    check_cuda(cudaMemGetInfo(&free, &all), "size of device memory");
+    return all;
+}
+
 void* allocate(std::size_t bytes)
 {
     void* pointer = nullptr;
-    check_cuda(has_pool() ? cudaMallocAsync(&pointer, bytes, nullptr) : cudaMalloc(&pointer, bytes),
-               "allocate device memory");
+    cudaError_t const error = has_pool() ? cudaMallocAsync(&pointer, bytes, nullptr) : cudaMalloc(&pointer, bytes);
+    if (error == cudaErrorMemoryAllocation) {
+        cudaGetLastError(); // is no error of the next launch
+        throw std::bad_alloc();
+    }
+    check_cuda(error, "allocate device memory");
     return pointer;
 }
 

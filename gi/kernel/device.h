@@ -17,7 +17,9 @@ bool is_device_simulated();
 /// Throws InputError if `space` is the device and no device is present.
 void check_device(Space space);
 
-/// Returns uninitialised bytes; throws std::bad_alloc (host) or std::runtime_error naming the CUDA error (device).
+/// That a space has in all.
+std::size_t memory_bytes(Space space);
+/// Returns uninitialised bytes; throws std::bad_alloc, or std::runtime_error naming the CUDA error.
 void* allocate_bytes(Space space, std::size_t bytes);
 void free_bytes(Space space, void* bytes) noexcept;
 void fill_bytes(Space space, void* bytes, unsigned char value, std::size_t count);

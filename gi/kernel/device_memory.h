@@ -7,7 +7,8 @@
 namespace gi::device {
 
 bool present();
-void* allocate(std::size_t bytes);
+std::size_t memory();              ///< bytes, of the device in all
+void* allocate(std::size_t bytes); ///< throws std::bad_alloc
 void release(void* bytes) noexcept;
 void fill(void* bytes, unsigned char value, std::size_t count);
 /// Copies within the device or between device and host; the addresses determine the direction.

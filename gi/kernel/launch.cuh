@@ -13,7 +13,9 @@ namespace gi {
 /// On a CUDA error, throws std::runtime_error with `what` and CUDA's error message.
 inline void check_cuda(cudaError_t error, char const* what)
 {
-    if (error != cudaSuccess) throw std::runtime_error(std::string(what) + ": CUDA: " + cudaGetErrorString(error));
+    if (error == cudaSuccess) return;
+    cudaGetLastError(); // is no error of the next launch
+    throw std::runtime_error(std::string(what) + ": CUDA: " + cudaGetErrorString(error));
 }
 
 template <class Kernel>

@@ -32,7 +32,7 @@ void launch_host(std::size_t n, Kernel const& kernel)
                       [&](auto const& range) { run_items(kernel, range.begin(), range.end()); });
 }
 
-/// @param name appears in errors and timings
+/// @param name appears in counts and errors; what fails on a device while it runs is named so in debug builds alone, else by the next wait
 template <class Kernel>
 void launch(Space space, char const* name, std::size_t n, Kernel const& kernel)
 {

@@ -2,6 +2,7 @@
 
 #include "gi/core/processor_level.h"
 #include "gi/core/shell.h"
+#include "gi/kernel/device.h"
 #include "viewer/base/report_json.h"
 #include "viewer/base/version.h"
 #include "viewer/report/machine.h"
@@ -130,6 +131,7 @@ std::map<std::string, std::string> make_metadata(RenderOptions const& o, gi::Ren
         {"bounces", std::to_string(s.bounces)},
         {"paths", std::to_string(result.paths)},
         {"units", "radiance, W/(m2 sr), linear Rec. 709"}};
+    if (s.space == gi::Space::device) facts["device"] = gi::is_device_simulated() ? "cuda, simulated" : "cuda";
     if (knows_error(result)) facts["estimated_relmse"] = fmt::format("{:.3g}", result.relmse); // unfiltered
     return facts;
 }

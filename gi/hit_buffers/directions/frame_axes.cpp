@@ -22,9 +22,16 @@ void FrameAxes::make(AxisSet::Source source, bool walks)
     set_.emplace(*source_);
     if (!stored() || !walks_) return;
     StageTimer const timer(report_, "build (hit buffers)");
-    DirectionSet const directions = make_directions(slhb_.directions);
+    until_small_enough([&] { store(); });
+}
+
+void FrameAxes::store() { set_->store(make_directions(slhb_.directions)); }
+
+/// Halves the resolution until what a call builds is within --memory.
+void FrameAxes::until_small_enough(std::function<void()> const& build)
+{
     for (;;) try {
-            return set_->store(directions);
+            return build();
         } catch (HitBuffersTooLarge const&) {
             make_smaller();
         }
@@ -50,17 +57,17 @@ void FrameAxes::prepare(int surfaces, std::uint32_t index)
     auto const sequences = std::uint32_t(std::clamp(surfaces, 1, int(AxisSet::kSequences)));
     StageTimer const timer(report_, stored() ? "layers that moved" : "hit buffers of a pass");
     if (!stored()) {
-        for (;;) try {
-                set_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
-                break;
-            } catch (HitBuffersTooLarge const&) {
-                make_smaller();
-            }
-        set_->update_axes();
-        return;
+        return until_small_enough([&] {
+            set_->refresh(sequences, std::uint32_t(slhb_.axes), std::uint32_t(slhb_.fresh_axes), index);
+            set_->update_axes();
+        });
     }
     auto const begun = std::chrono::steady_clock::now();
-    std::size_t const axes = set_->update_some_axes(sequences, slhb_.gather ? 0 : updated_axes_, frames_);
+    std::size_t axes = 0;
+    until_small_enough([&] {
+        if (set_->tables().axes.empty()) store(); // made smaller, as triangles that moved have more layers
+        axes = set_->update_some_axes(sequences, slhb_.gather ? 0 : updated_axes_, frames_);
+    });
     double const s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (!std::exchange(follows_, true)) dynamic_update_ = {0, int(axes), int(sequences), 0};
     dynamic_update_.seconds += s;

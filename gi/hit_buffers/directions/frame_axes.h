@@ -7,6 +7,7 @@
 #include "gi/hit_buffers/settings.h"
 #include "gi/render/frame_renderer.h"
 
+#include <functional>
 #include <optional>
 
 namespace gi {
@@ -41,6 +42,8 @@ private:
     SlhbSettings const& slhb_;
     Report& report_;
     /// Rebuilds with fewer texels if the buffers take too much memory.
+    void store();
+    void until_small_enough(std::function<void()> const& build);
     void make_smaller();
 
     std::optional<AxisSet::Source> source_;

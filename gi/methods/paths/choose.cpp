@@ -5,6 +5,7 @@
 #include "gi/hit_buffers/directions/directions.h"
 #include "gi/hit_buffers/hit_buffer.h"
 #include "gi/hit_buffers/options.h"
+#include "gi/kernel/device.h"
 #include "gi/light_paths/lamp_caustics.h"
 #include "gi/methods/paths/costs.h"
 #include "gi/methods/paths/lobes.h"
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 namespace gi {
 namespace {
@@ -22,8 +22,6 @@ double cores_of(RenderSettings const& s)
 {
     return s.threads > 0 ? s.threads : tbb::this_task_arena::max_concurrency();
 }
-
-std::size_t physical_bytes() { return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE)); }
 
 /// Depth complexity of a scene: mean number of layers over non-empty texels,
 /// in a coarse buffer along an oblique direction.
@@ -121,7 +119,7 @@ SlhbSettings choose_look_ups(RenderSettings const& asked, World const& world, Co
     if (s.light_samples == 0)
         s.light_samples =
             from_points ? 16 : std::clamp(int(worth / map(s.shadow_resolution)), sky ? 8 : 1, most_light_samples);
-    if (s.memory_mib == 0) s.memory_mib = int((physical_bytes() >> 20) / 4);
+    if (s.memory_mib == 0) s.memory_mib = int((memory_bytes(asked.space) >> 20) / 4);
     auto const map_bytes = [&] { // cube maps, the largest
         return 6.0 * s.light_samples * s.shadow_resolution * s.shadow_resolution * sizeof(NearestTexel);
     };

@@ -20,7 +20,7 @@ namespace gi {
 class OnlyOnCpu : public PairFrames, public PunctualLeftOut, public FramesGivenUp {};
 class Nothing {};
 
-/// @tparam Renderer  PathsRenderer, or a KernelRenderer of slhb
+/// @tparam Renderer  PathsRenderer, or a KernelRenderer
 template <class Renderer>
 class PathsFrames : public FrameRenderer,
                     public FollowingAxes,

@@ -5,6 +5,7 @@
 #include "gi/methods/paths/frames_of.h"
 #include "gi/methods/paths/kernels/kernel_frames.h"
 #include "gi/methods/paths/kernels/kernel_render.h"
+#include "gi/methods/paths/kernels/kernel_renderer.h"
 #include "gi/methods/paths/look_up_trust.h"
 #include "gi/render/fingerprint.h"
 
@@ -147,7 +148,9 @@ RenderSettings paths_for_display(RenderSettings settings)
 ExposurePlan paths_exposure(World const& world, RenderSettings const& asked, Camera const&, Triangles)
 {
     if (!(asked.budget_s > 0)) return {"paths", asked};
-    return {"paths", choose_settings(with(PathAlgorithm{}, asked), world, make_soup(world))};
+    ExposurePlan plan{"paths", choose_settings(with(PathAlgorithm{}, asked), world, make_soup(world))};
+    if (asked.space == Space::device) KernelRenderer<Space::device>::limit(plan.settings);
+    return plan;
 }
 
 } // namespace gi

@@ -1,6 +1,6 @@
 #pragma once
 // The radiance cache (radiance_cache.h) for kernels. Sums are integers, so that they are the same whatever the order in
-// which threads add to them: steps of a unit that is near the median of what paths bring, found in the first pass.
+// which threads add to them, as long as all notes have room: steps of a unit that is near the median of what paths bring, found in the first pass.
 // Kernels read the sums of earlier passes while paths are traced, and add the notes of a pass when all paths have ended.
 
 #include "gi/kernel/atomics.h"
@@ -53,7 +53,8 @@ struct CacheView {
     vec3 shift{0};         ///< see cell_shift
     std::uint32_t least = 0;
     ColumnView<CacheNoteOnWay> notes;
-    View<std::uint32_t> count; ///< [0]: notes, [1]: notes without room, [2]: cells that are taken
+    /// [0]: notes, also those without room, [1]: notes whose cells have no room, [2]: notes without room, [3]: cells taken
+    View<std::uint32_t> count;
 
     GI_FN CellSums sums_of(std::uint64_t key) const
     {
@@ -75,7 +76,7 @@ struct CacheView {
         std::size_t at = key & (cells.size() - 1);
         for (std::uint32_t k = 0; k < kMostProbes; ++k, at = (at + 1) & (cells.size() - 1)) {
             std::uint64_t const there = atomic_exchange_if(cells[at].key, 0, key);
-            if (there == 0) atomic_add(count[2], 1);
+            if (there == 0) atomic_add(count[3], 1);
             if (there == 0 || there == key) return &cells[at];
         }
         return nullptr;
@@ -84,7 +85,10 @@ struct CacheView {
     GI_FN std::uint32_t open(CacheNoteOnWay const& note) const
     {
         std::uint32_t const at = atomic_add(count[0], 1);
-        if (at < notes.count) notes.store(at, note);
+        if (at < notes.count)
+            notes.store(at, note);
+        else
+            atomic_add(count[2], 1);
         return at < notes.count ? at : std::uint32_t(notes.count);
     }
 };

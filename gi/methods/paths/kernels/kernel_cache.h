@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <new>
+#include <utility>
 
 namespace gi {
 
@@ -35,11 +37,9 @@ public:
     /// For the paths of a view. @param paths  at most
     CacheView lend(std::size_t paths)
     {
-        // First passes, in which no path ends in a cell, have more; what has no room is counted.
-        constexpr std::size_t kNotesOfPath = 3;
-        if (notes_.size() != kNotesOfPath * paths) {
+        if (notes_.size() < notes_of_path_ * paths) {
             notes_ = {};
-            notes_ = ColumnBuffer<CacheNoteOnWay, S>(kNotesOfPath * paths);
+            notes_ = ColumnBuffer<CacheNoteOnWay, S>(notes_of_path_ * paths);
         }
         fill_bytes(S, count_.view().data, 0, sizeof(std::uint32_t));
         return view();
@@ -56,15 +56,22 @@ public:
     void grow()
     {
         std::vector<std::uint32_t> const counts = download(count_);
-        taken_ = counts[2];
-        refused_ += counts[1];
-        fill_bytes(S, count_.view().data, 0, 2 * sizeof(std::uint32_t));
+        taken_ = counts[3];
+        refused_ += std::uint64_t(counts[1]) + counts[2];
+        if (counts[2] > 0) notes_of_path_ = std::min(2 * notes_of_path_, kMostNotesOfPath);
+        fill_bytes(S, count_.view().data, 0, 3 * sizeof(std::uint32_t));
         if (2 * std::size_t(taken_) <= cells_.size() || 2 * cells_.size() > most_cells_) return;
-        Buffer<CacheCell, S> const old = std::move(cells_);
-        cells_ = Buffer<CacheCell, S>(4 * old.size() <= most_cells_ ? 4 * old.size() : 2 * old.size());
+        std::size_t const larger = 4 * cells_.size() <= most_cells_ ? 4 * cells_.size() : 2 * cells_.size();
+        Buffer<CacheCell, S> old;
+        try {
+            old = std::exchange(cells_, Buffer<CacheCell, S>(larger));
+        } catch (std::bad_alloc const&) {
+            most_cells_ = cells_.size(); // it stays as it is
+            return;
+        }
         zero(cells_);
         zero(count_);
-        launch(S, "cells that move", old.size(), MoveCells{old.view(), view()});
+        launch(S, "cells that move", old.size(), MoveCells{std::as_const(old).view(), view()});
     }
 
     std::size_t cells() const { return taken_; }
@@ -73,6 +80,7 @@ public:
 
 private:
     static constexpr std::size_t kLeastCells = std::size_t(1) << 18; // 16 MiB
+    static constexpr std::size_t kMostNotesOfPath = 12;
 
     template <class T>
     static void zero(Buffer<T, S>& b)
@@ -101,8 +109,9 @@ private:
 
     std::size_t most_cells_;
     Buffer<CacheCell, S> cells_;
-    Buffer<std::uint32_t, S> count_{3}; ///< see CacheView
+    Buffer<std::uint32_t, S> count_{4}; ///< see CacheView
     ColumnBuffer<CacheNoteOnWay, S> notes_;
+    std::size_t notes_of_path_ = 3; ///< on average; what has no room is counted, and later passes have more
     vec3 shift_;
     float unit_ = 0; ///< 0 = not chosen
     bool empty_ = true;

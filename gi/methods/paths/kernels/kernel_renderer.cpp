@@ -5,6 +5,7 @@
 #include "gi/scene/model/plan.h"
 
 #include <algorithm>
+#include <new>
 
 namespace gi {
 
@@ -59,13 +60,22 @@ void KernelRenderer<S>::build_exact()
     if (needed == scene_.has_rays()) return;
     StageTimer const timer(report_, "build (BVH)");
     scene_.use_rays(needed, plan_scene(world_).alpha_tests, traced_.first_moving);
+    finish(S);
 }
 
 template <Space S>
 void KernelRenderer<S>::make_axes()
 {
     scene_.forget_axes();
-    auto const build = [this](std::span<AxisSet::AxisToBuild const> axes) { return scene_.build_axes(axes); };
+    auto const build = [this](std::span<AxisSet::AxisToBuild const> axes) {
+        try {
+            auto built = scene_.build_axes(axes);
+            finish(S); // so that their time is known, by which fewer are updated
+            return built;
+        } catch (std::bad_alloc const&) { // a device has less memory than --memory says
+            throw HitBuffersTooLarge();
+        }
+    };
     axes_.make({.bounds = traced_.grid_bounds,
                 .windows = traced_.windows.boxes(),
                 .soup = traced_.soup,
@@ -104,6 +114,7 @@ void KernelRenderer<S>::changed(Changes const& c)
         StageTimer const timer(report_, "update of dynamic triangles");
         if (c.geometry) traced_.move(world_);
         scene_.update(world_, traced_.soup, c);
+        finish(S);
     }
     if (c.materials || c.coverage) build_exact();
     bool axes = axes_.walks() != walks(), light_points = changes_lights(c);
@@ -183,7 +194,6 @@ void KernelRenderer<S>::passes(std::uint32_t index, std::uint32_t count, std::sp
         add_pass(index + i, sums, sharing == VertexSharing::cached);
     StageTimer const timer(report_, "paths");
     PathKernelCounts const done = scene_.take_counts();
-    if (scene_.cache() != nullptr) scene_.cache()->grow();
     sums[0].counts.cut_paths += done.cut_paths; // of all views, which are reported together
     sums[0].counts.invalid_paths += done.invalid_paths;
     queries_ += done.queries;
@@ -227,7 +237,11 @@ void KernelRenderer<S>::add_pass(std::uint32_t index, std::span<Accumulator> sum
         hidden_ += v.hidden_pixels;
         pixels_ += v.pixels();
     }
-    if (scene_.cache() != nullptr) scene_.cache()->end_pass();
+    if (scene_.cache() != nullptr) {
+        scene_.cache()->end_pass();
+        if (cached)
+            scene_.cache()->grow(); // after every pass: whatever the number of passes together, the same bits
+    }
     finish(S);
 }
 

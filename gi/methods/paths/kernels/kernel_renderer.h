@@ -25,7 +25,7 @@ template <Space S>
 class KernelRenderer {
 public:
     /// Throws InputError on features that kernels lack: an orthographic camera, --cone, --gather, --packed,
-    /// --interleave, --radiance-cache on.
+    /// --interleave; those of slhb, --radiance-cache on.
     static void check(Camera const& camera, RenderSettings const& settings);
     /// Sets what the plan would choose for the CPU to what kernels have.
     static void limit(RenderSettings& chosen) { chosen.of<PathsSettings>().interleave = 1; } // regardless of the budget
