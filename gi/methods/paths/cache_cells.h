@@ -41,7 +41,7 @@ namespace cache_detail {
 inline constexpr float kWidth = 0.6f;
 /// Number of notes required before paths end in a cell; with more, the probability of continuing falls inversely.
 inline constexpr float kEnough = 3;
-/// Lower limit of that probability: kTeaching times the relative deviation of the cell's notes, clamped to the
+/// Lower limit of that probability: kTeaching times the relative deviation of the widest cell's notes, clamped to the
 /// other two, because all pixels share a cell's error and no filter removes it. In a mean over reading and
 /// teaching paths, teaching pays off in this proportion.
 inline constexpr float kTeaching = 0.05f, kLeastTeaching = 0.03f, kMostTeaching = 0.3f;
@@ -141,6 +141,7 @@ GI_FN CachedRadiance read_cells(CacheKeys const& keys, std::size_t least, SumsOf
 {
     using namespace cache_detail;
     CachedRadiance known;
+    float teaching = 0;
     for (std::size_t l = 0; l < CacheKeys::kLevels; ++l) {
         CellSums const c = sums_of(keys.level[l]);
         if (c.notes < 0) return {};
@@ -153,9 +154,10 @@ GI_FN CachedRadiance read_cells(CacheKeys const& keys, std::size_t least, SumsOf
             known.go_on = kEnough / (c.notes + kEnough);
         else if (l == least && c.notes >= kEnough)
             known.go_on = kEnough / c.notes;
-        if (l >= least && c.notes > 0)
-            known.go_on =
-                glm::max(known.go_on, glm::clamp(kTeaching * deviation(c), kLeastTeaching, kMostTeaching));
+        // Not the deviation of the cell that is read: those that happen to be bright have a larger one, paths would end in them
+        // less often, and light would be lost.
+        if (l == 0) teaching = glm::clamp(kTeaching * deviation(c), kLeastTeaching, kMostTeaching);
+        if (l >= least && c.notes > 0) known.go_on = glm::max(known.go_on, teaching);
         if (c.notes < kSplit) break;
         known.to_teach = l + 2 < CacheKeys::kLevels ? l + 2 : CacheKeys::kLevels;
     }
