@@ -87,6 +87,7 @@ public:
         if (!bvh_) return;
         if (changes.materials || changes.coverage) bvh_->test_alpha(plan_scene(world_).alpha_tests);
         if (changes.geometry) bvh_->moved(there_.view());
+        finish(S);
     }
 
     WorldView prepare()
@@ -94,6 +95,7 @@ public:
         if (!bvh_) {
             StageTimer const timer(report_, "build (BVH)");
             bvh_.emplace(there_.view(), plan_scene(world_).alpha_tests, first_moving_, stop_of_building(stop_));
+            finish(S);
         }
         return there_.view();
     }
