@@ -38,12 +38,12 @@ TEST(DenoiseCommand, RefusesWhatItCannotFilter)
     run_well("render cornell --size 24x16 --paths 2 --quiet --out noisy.exr", folder.path());
     run_well("render cornell --size 24x16 --paths 2 --quiet --aovs L0 --out bare.exr", folder.path());
     run_well("denoise noisy.exr --out smooth.exr", folder.path());
-    for (auto const& [call, why] :
-         {std::pair{"denoise smooth.exr --png a.png", "filtered already"},
-          std::pair{"denoise bare.exr --png a.png", "L1"}, std::pair{"denoise noisy.exr", "nothing to write"},
-          std::pair{"denoise noisy.exr --denoise none --png a.png", "leaves a picture"},
-          std::pair{"denoise noisy.exr --out noisy.exr", "noisy.exr"},
-          std::pair{"denoise missing.exr --png a.png", "missing.exr"}}) {
+    for (auto const& [call, why] : {std::pair{"denoise smooth.exr --png a.png", "filtered already"},
+                                    std::pair{"denoise bare.exr --png a.png", "no layer 'normal'"},
+                                    std::pair{"denoise noisy.exr", "nothing to write"},
+                                    std::pair{"denoise noisy.exr --denoise none --png a.png", "leaves a picture"},
+                                    std::pair{"denoise noisy.exr --out noisy.exr", "noisy.exr"},
+                                    std::pair{"denoise missing.exr --png a.png", "missing.exr"}}) {
         Outcome const o = run(call, folder.path());
         EXPECT_EQ(o.code, 2) << call;
         EXPECT_NE(o.err.find(why), std::string::npos) << call << ": " << o.err;
