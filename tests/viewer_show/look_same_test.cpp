@@ -50,12 +50,15 @@ TEST(LookSame, ClipsAndBodiesDoWhereSomethingCanMove)
     EXPECT_FALSE(look_same(frame, moment(), moved));
 }
 
-TEST(DrawingPace, OfSoftwareLeavesTimeToTheLightOfEditedLamps)
+TEST(DrawingPause, OfSoftwareLeavesTimeToTheLightOfEdits)
 {
     Change const object{"object.0", {}}, lamp{"light.all.scale", 0};
-    EXPECT_EQ(drawing_pace({object, lamp}, false), 1);
-    EXPECT_EQ(drawing_pace({object}, true), 1);
-    EXPECT_EQ(drawing_pace({object, lamp}, true), 2);
+    EXPECT_EQ(drawing_pause_s({object, lamp}, false, 0.1), 0);
+    EXPECT_EQ(drawing_pause_s({}, true, 0.1), 0);
+    EXPECT_EQ(drawing_pause_s({object, lamp}, true, 0.1), 0.1);
+    EXPECT_EQ(drawing_pause_s({object}, true, 0.1), 0);
+    EXPECT_EQ(drawing_pause_s({object}, true, 0.02), 0.02);
+    EXPECT_NEAR(drawing_pause_s({object}, true, 0.04), 0.015, 1e-9);
 }
 
 } // namespace

@@ -40,10 +40,13 @@ FrameCommand moment_at(LiveFrame const& frame, Viewpoint const& at, double now_s
     return moment;
 }
 
-double drawing_pace(std::vector<Change> const& edits, bool in_software)
+double drawing_pause_s(std::vector<Change> const& edits, bool in_software, double drawing_s)
 {
-    constexpr double kOfEdits = 2;
-    return in_software && std::ranges::any_of(edits, is_light_edit, &Change::key) ? kOfEdits : 1;
+    constexpr double kMoves_s = 0.055;
+    if (!in_software || edits.empty()) return 0;
+    return std::ranges::any_of(edits, is_light_edit, &Change::key)
+               ? drawing_s
+               : std::clamp(kMoves_s - drawing_s, 0.0, drawing_s);
 }
 
 bool look_same(LiveFrame const& frame, FrameCommand const& a, FrameCommand const& b)

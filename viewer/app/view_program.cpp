@@ -360,7 +360,7 @@ private:
         double const since_s = state_.clock.now_s() - last_swap_s_;
         bool const fresh = newest != state_.frame;
         double const pause_s =
-            newest ? (drawing_pace(core_.renderer->edits_since(*newest), in_software()) - 1) * surfaces_s_ : 0;
+            newest ? drawing_pause_s(core_.renderer->edits_since(*newest), in_software(), surfaces_s_) : 0;
         bool const moved = !follows() && state_.settings().reproject && newest &&
                            (has_moved() || (newest->command.only_light && !shows(*newest))) &&
                            since_s > std::max({1 / kPresentation_Hz, kDrawings * draw_s_, pause_s});

@@ -172,8 +172,9 @@ MethodRunner::render(FrameCommand const& command, std::span<HiddenPixels const> 
         if (small) views.back().filter = gi::PixelFilter::centre;
     }
     if (around.width > 0) views.push_back(around);
-    // The blur of a radiance cache would stay in the mean of a still picture.
-    auto const sharing = anything_moved ? gi::VertexSharing::cached : gi::VertexSharing::exact;
+    // The blur of a radiance cache would stay in the mean of a still picture; pictures of light alone are replaced.
+    auto const sharing =
+        anything_moved || command.only_light ? gi::VertexSharing::cached : gi::VertexSharing::exact;
     if (auto* const live = gi::ask<gi::LiveSettings>(*renderer_)) live->follow(settings.render);
     if (auto* const axes = gi::ask<gi::FollowingAxes>(*renderer_))
         axes->update_axes(gi::updates_axes(method_, settings.render) ? settings.updated_axes : 0);

@@ -143,12 +143,19 @@ private:
                                    double(std::max<std::size_t>(1, picture.size()))});
     }
 
+    /// The head moves, or the scene between the first change and the last.
+    bool moves(double path_s) const
+    {
+        return walker_.path().moves(path_s) ||
+               (!changes_.empty() && path_s >= changes_.front().path_s && path_s < changes_.back().path_s);
+    }
+
     LiveRenderer::Hooks hooks()
     {
         LiveRenderer::Hooks hooks;
         hooks.finished = [this](LiveFrame const& f) {
             std::lock_guard const lock(counting_);
-            if (!walker_.path().moves(f.command.pose_s - begun_s_)) return;
+            if (!moves(f.begun_s - begun_s_)) return;
             counts_.between_ms.push_back(1e3 * (f.done_s - std::exchange(done_s_, f.done_s)));
             for (auto const& [stage, s] : f.result.stages_s) counts_.stages_s[stage] += s;
             counts_.light_scale += f.budget.scale;
@@ -217,16 +224,15 @@ private:
         double const done = clock_.now_s();
         drew_s_ = done - drawing;
         score_moments(done - begun_s_); // of what is on the screen until now
-        bool const changes = next_change_ > 0 && next_change_ < changes_.size(),
-                   moves = changes || walker_.path().moves(now);
-        if (moves) {
+        bool const anything = moves(now);
+        if (anything) {
             if (shown_s_ > 0) counts_.gaps_ms.push_back(1e3 * (done - shown_s_));
             counts_.light_ages_ms.push_back(1e3 * (done - newest->command.pose_s));
             counts_.drawing_ms.push_back(1e3 * drew_s_);
             counts_.surfaces_scale += settings_.surfaces_scale;
             ++counts_.shown;
         }
-        shown_s_ = moves ? done : 0;
+        shown_s_ = anything ? done : 0;
         turn_ = drawn;
         note_mean(done - begun_s_);
         if (now > walker_.path().seconds() + kSettles_s) {
@@ -269,10 +275,11 @@ private:
     void wait(double now)
     {
         constexpr double kPresentation_Hz = 60, kDrawings = 5, kLook_s = 0.004;
-        double const pace = presenter_.views().drew_surfaces()
-                                ? drawing_pace(renderer_.edits_since(*shown_), in_software_)
-                                : kDrawings;
-        double const next_s = now + std::max(1 / kPresentation_Hz, pace * drew_s_);
+        double const taken_s =
+            presenter_.views().drew_surfaces()
+                ? drew_s_ + drawing_pause_s(renderer_.edits_since(*shown_), in_software_, drew_s_)
+                : kDrawings * drew_s_;
+        double const next_s = now + std::max(1 / kPresentation_Hz, taken_s);
         while (clock_.now_s() - begun_s_ < next_s && renderer_.newest() == shown_) {
             if (double const t = clock_.now_s() - begun_s_; t - last_s_ > kLook_s) look(t);
             std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -32,6 +32,10 @@ bool updates_axes(Settings const& s) { return gi::updates_axes(gi::find_method(s
 /// Looks (0.1 s each) that find nothing to render before memory is given back
 /// that the next frame would need again.
 constexpr int kRestsBeforeTrim = 10;
+/// Pictures of light alone after the last change, the last of them larger, before the first at full size, which takes
+/// many times as long.
+constexpr int kSettling = 2;
+constexpr double kSettledScale = 0.5;
 
 } // namespace
 
@@ -277,7 +281,10 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     FrameCommand command;
     command.views = now.views;
     bool const own_surfaces = s.first_surfaces && has_own_surfaces(command) && !(s.scale > 0);
-    budget = governor_.next(pixels_of(now.views), still, {s.paths, s.scale, s.scale}, own_surfaces);
+    bool const shows_drawn = own_surfaces && now.drawn_scale > 0 && s.draw_surfaces && s.compare.empty();
+    bool const refines = still && !(shows_drawn && settled_ < kSettling);
+    budget = governor_.next(pixels_of(now.views), refines, {s.paths, s.scale, s.scale}, own_surfaces);
+    if (still && !refines && settled_ + 1 == kSettling) budget.scale = std::max(budget.scale, kSettledScale);
     command.frame = frame_++;
     command.pose_s = now.pose_s;
     command.display_s = now.display_s;
@@ -291,7 +298,7 @@ FrameCommand LiveRenderer::make_command(Viewpoint const& now, bool still, FrameB
     command.paths = budget.paths;
     if (own_surfaces) {
         command.light_scale = budget.scale;
-        command.only_light = now.drawn_scale > 0 && s.draw_surfaces && s.compare.empty() && budget.scale < 1;
+        command.only_light = shows_drawn && budget.scale < 1;
         if (command.only_light) // mirrors and panes need not be sharper than what is drawn around them
             budget.surfaces = std::max(budget.scale, std::min(budget.surfaces, now.drawn_scale));
         command.surface_scale = budget.surfaces;
@@ -385,6 +392,7 @@ void LiveRenderer::run_leading()
             if (looked) looked_ = true; // the next frame is for it
             continue;
         }
+        settled_ = still ? settled_ + 1 : 0;
         if (rendered == Rendered::failed) wait_until(clock_.now_s() + 0.2);
         if (!still) wait_until(begun + 1 / s.rate_hz);
     }

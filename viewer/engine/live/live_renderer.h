@@ -229,6 +229,7 @@ private:
     double frame_s_ = 0;      ///< time that frames take, smoothed
     std::uint64_t frame_ = 0;
     std::uint32_t still_paths_ = 0;
+    int settled_ = 0;   ///< frames since anything moved
     int rests_for_ = 0; ///< looks in a row that found nothing to render
     std::thread thread_;
 };
