@@ -4,6 +4,7 @@
 #include "gi/core/rng.h"
 #include "gi/light_paths/emission.h"
 #include "gi/light_paths/light_vertex.h"
+#include "gi/render/medium.h"
 #include "gi/render/ray_query.h"
 #include "gi/scene/shading/narrow_lobes.h"
 
@@ -17,6 +18,7 @@ struct LightPath {
     int scatterings = 0;                  ///< non-delta, so far
     std::uint32_t number = 0;             ///< see LightVertex::path
     std::uint32_t triangle = kNoTriangle; ///< that it leaves
+    std::uint32_t medium = kNoMedium;     ///< see medium.h
     bool from_light = true, from_surface = false;
     bool from_outside = false, straight = true; ///< see LightPaths::grid_side
     bool by_delta = false;                      ///< since the last vertex
@@ -99,7 +101,8 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
     vec3 const arrived = at.frame.to_local(-direction);
     float const cos_arrived = glm::abs(glm::dot(direction, at.geometric_normal));
     if (!(arrived.z > 0) || !(cos_arrived > 0)) return false;
-    vec3 const power = p.light.power * (arrived.z / cos_arrived);
+    vec3 const power = p.light.power * (arrived.z / cos_arrived) *
+                       left_by_medium(world, p.medium, hit.triangle, at, hit.distance);
     if (!all_finite(power) || !(max_component(power) > 0)) return false;
     p.length += hit.distance;
     float const footprint = (p.area + p.solid_angle * square(p.length)) / cos_arrived;
@@ -152,6 +155,7 @@ GI_FN bool advance(WorldView const& world, LightPathRules const& s, LightPath& p
         p.length = 0;
     }
     p.triangle = hit.triangle;
+    p.medium = medium_beyond(world, p.medium, hit.triangle, at, next);
     p.light.ray = {leave(at, leaves), leaves};
     return true;
 }

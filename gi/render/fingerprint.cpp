@@ -60,6 +60,7 @@ void add(Hash& h, Material const& m)
     for (float const v : {m.alpha, m.alpha_cutoff, m.metallic, m.roughness, m.specular, m.ior, m.transmission,
                           m.phong_exponent, m.normal_scale})
         h.add(v);
+    if (m.absorption != vec3{0}) h.add(m.absorption); // else as before it was known
     h.add(std::uint64_t(m.model));
     h.add(std::uint64_t(m.alpha_mode));
     h.add(std::uint64_t(m.double_sided) * 2 + std::uint64_t(m.thin));

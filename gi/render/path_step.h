@@ -3,6 +3,7 @@
 // there, what a light sample adds, and whether the path continues. Next-event estimation and sampling of
 // directions are combined with the power heuristic (Veach 1997, sec. 9.2.4).
 
+#include "gi/render/medium.h"
 #include "gi/render/path_sample.h"
 #include "gi/render/sampling.h"
 #include "gi/scene/model/camera.h"
@@ -18,6 +19,7 @@ struct PathState {
     /// which no other technique samples.
     float arrival_pdf = 0;
     int scatterings = 0; ///< non-delta, so far
+    std::uint32_t medium = kNoMedium; ///< see medium.h
 };
 
 /// The sum for light that scatters so often (non-delta) between its source and the camera: L0, L1 or L2.

@@ -35,6 +35,7 @@ struct SeenSurfaces::Way {
     mat3 image{1};       ///< from directions where the way is, to their images
     float length_m = 0;  ///< up to the last piece
     int mirrors = 0;
+    std::uint32_t medium = kNoMedium;
     bool aside = false; ///< ray of a pane's other lobe: only emitters count
 };
 
@@ -194,14 +195,17 @@ bool SeenSurfaces::arrive(std::uint32_t triangle, vec2 weights, int y, Way& way,
                           std::vector<Sent>& sent, SeenSurface& out) const
 {
     ShadingPoint const at = shading_point(view_, triangle, weights, way.ray.direction);
+    float const length_m = glm::length(at.position - way.ray.origin);
+    way.left *= left_by_medium(view_, way.medium, triangle, at, length_m);
     out.emitted += way.left * at.emission;
-    way.length_m += glm::length(at.position - way.ray.origin);
+    way.length_m += length_m;
     vec3 const wo = at.frame.to_local(-way.ray.direction);
     BsdfSample lobes[3];
     if (int const n = exact_ && way.mirrors < kMostMirrors ? find_mirror(at, wo, lobes) : 0) {
         auto const follow = [&](BsdfSample const& lobe, Way& on) {
             vec3 const direction = at.frame.to_world(lobe.wi);
             on.left *= lobe.weight;
+            on.medium = medium_beyond(view_, on.medium, triangle, at, lobe);
             on.ray = {leave(at, direction), direction};
             ++on.mirrors;
         };

@@ -234,6 +234,7 @@ Scene everything()
     m.ior = 1.33f;
     m.transmission = 0.6f;
     m.thin = false;
+    m.absorption = {2, 0, 0};
     m.emission = {0.5f, 7, 0.25f};
     m.normal_scale = 0.7f;
     float const c = std::cos(0.4f), sn = std::sin(0.4f);

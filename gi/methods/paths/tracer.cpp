@@ -254,7 +254,7 @@ void PathsTracer::find_hits(Pass const& pass, std::span<Vertex> vertices, std::v
 /// True if the path ends at a shared vertex here.
 bool PathsTracer::ends_shared(State& s, Vertex const& v, SharedVertex& shared) const
 {
-    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis || v.exact ||
+    if (s.vertex != 1 || s.triangle == kNoPrimitive || !s.along_axis || v.exact || s.medium != kNoMedium ||
         !bsdf_detail::is_matt(world_.bsdfs[world_.surfaces[s.triangle].material]))
         return false;
     Surface const& surface = world_.surfaces[s.triangle];

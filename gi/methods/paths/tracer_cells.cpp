@@ -10,7 +10,8 @@ namespace gi {
 CacheKeys PathsTracer::cache_keys(Pass const& pass, State const& s) const
 {
     // After the last scattering, surfaces only contribute emission.
-    if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces_) return {};
+    if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces_ || s.medium != kNoMedium)
+        return {};
     Surface const& surface = world_.surfaces[s.triangle];
     if (is_directional(world_.bsdfs[surface.material]) ||
         (!world_.emitter_pdf.empty() && world_.emitter_pdf[s.triangle] > 0))

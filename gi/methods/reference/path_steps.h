@@ -64,6 +64,7 @@ GI_FN bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& c
     }
     vec3 const arrival = p.ray.direction;
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, arrival);
+    p.throughput *= left_by_medium(world, p.medium, hit.triangle, at, hit.distance);
     if (vertex == 0) {
         p.first = {hit.triangle, hit.barycentric};
         see_first_surface(p.sample, at, camera);
@@ -97,6 +98,7 @@ GI_FN bool PathSteps::advance(Path& p, Hit const& hit, int vertex, PathCounts& c
     BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
     if (last && !next.delta) return false;
     p.throughput *= next.weight;
+    p.medium = medium_beyond(world, p.medium, hit.triangle, at, next);
     return continue_path(p, at, next);
 }
 

@@ -35,6 +35,7 @@ struct FieldRay {
     std::uint32_t direction; ///< index
     vec3 tint{1};            ///< of light along the way so far
     float bent_after = kInf; ///< m, see FieldHit::distance
+    std::uint32_t medium = kNoMedium;
 };
 
 /// Continues a ray at a mirror or glass. Returns none if it ends there.
@@ -44,7 +45,8 @@ std::optional<Ray> follow(WorldView const& w, Hit const& hit, RayQuery const& qu
     ShadingPoint const at = shading_point(w, hit.triangle, hit.barycentric, direction);
     Pcg32 rng = Pcg32::for_path(0x3f1e, query.seed, std::bit_cast<std::uint32_t>(direction.x));
     BsdfSample const next = sample(at.bsdf, at.frame.to_local(-direction), at.front, rng.uniform(), vec2{0.5f});
-    ray.tint *= next.weight;
+    ray.tint *= next.weight * left_by_medium(w, ray.medium, hit.triangle, at, hit.distance);
+    ray.medium = medium_beyond(w, ray.medium, hit.triangle, at, next);
     // Over the square of the index: the same inside of glass as before it. Cells there serve surfaces outside.
     if (next.transmitted && !at.bsdf.thin) ray.tint *= square(at.front ? at.bsdf.ior : 1 / at.bsdf.ior);
     bool const straight = next.transmitted && at.bsdf.thin;

@@ -24,6 +24,7 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     }
     vec3 const direction = p.ray.direction;
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, direction);
+    p.throughput *= left_by_medium(world, p.medium, hit.triangle, at, hit.distance);
     if (surface == 0) {
         see_first_surface(p.sample, at, camera);
         p.first = {hit.triangle, hit.barycentric};
@@ -68,6 +69,7 @@ bool CameraPaths::advance(CameraSubpath& p, Hit const& hit, int surface, std::ui
     BsdfSample const next = gi::sample(at.bsdf, wo, at.front, u_lobe, p.rng.uniform2());
     if (last && !next.delta) return false;
     p.throughput *= next.weight;
+    p.medium = medium_beyond(world, p.medium, hit.triangle, at, next);
     if (!(max_component(p.throughput) > 0)) return false;
     // The fraction is used as the probability of continuing, so that throughputs are unchanged.
     if (!next.delta && share < 1 && p.rng.uniform() >= share) return false;

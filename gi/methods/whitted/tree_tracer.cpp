@@ -95,6 +95,7 @@ void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<T
         return;
     }
     ShadingPoint const at = shading_point(world, hit.triangle, hit.barycentric, arrival);
+    r.state.throughput *= left_by_medium(world, r.state.medium, hit.triangle, at, hit.distance);
     if (generation == 0) see_first_surface(*r.sample, at, camera);
     if (max_component(at.emission) > 0)
         layer_of(*r.sample, r.state.scatterings) +=
@@ -118,6 +119,7 @@ void TreeTracer::shade(TreeRay& r, Hit const& hit, int generation, std::vector<T
         TreeRay child = r;
         child.state.throughput *= lobes[k].weight;
         child.state.arrival_pdf = 0;
+        child.state.medium = medium_beyond(world, r.state.medium, hit.triangle, at, lobes[k]);
         vec3 const direction = at.frame.to_world(lobes[k].wi);
         float const largest = max_component(child.state.throughput);
         if (!(largest > 0) || !is_on_one_side(at, direction, lobes[k].wi)) continue;

@@ -204,7 +204,15 @@ private:
             if (m.transmission_map.texture >= 0) t["transmissionTexture"] = texture_info(m.transmission_map);
             extend("KHR_materials_transmission", std::move(t));
         }
-        if (!m.thin) extend("KHR_materials_volume", {{"thicknessFactor", 1.0}});
+        if (!m.thin) {
+            json v{{"thicknessFactor", 1.0}};
+            if (m.absorption != vec3{0}) {
+                float const distance_m = 1 / max_component(m.absorption);
+                v["attenuationDistance"] = distance_m;
+                v["attenuationColor"] = to_json(glm::exp(-distance_m * m.absorption));
+            }
+            extend("KHR_materials_volume", std::move(v));
+        }
         if (m.model == MaterialModel::phong)
             j["extras"]["lightwell_phong"] = {{"specular", to_json(m.phong_specular)},
                                               {"exponent", m.phong_exponent}};

@@ -19,7 +19,8 @@ std::map<std::string, std::set<std::string>> const& scene_file_keys()
         {"camera", {"name", "from", "at", "fov", "height", "aperture_radius", "focus_distance"}},
         {"material",
          {"match", "model", "base_color", "roughness", "metallic", "specular", "ior", "transmission", "emission",
-          "alpha", "double_sided", "thin", "phong"}},
+          "alpha", "double_sided", "thin", "attenuation", "phong"}},
+        {"attenuation", {"color", "distance_m"}},
         {"phong", {"specular", "exponent"}},
     };
     return keys;

@@ -21,6 +21,12 @@ void change_material(Yaml const& o, Material& m)
     }
     if (o.has("double_sided")) m.double_sided = o.at("double_sided").boolean();
     if (o.has("thin")) m.thin = o.at("thin").boolean();
+    if (o.has("attenuation")) {
+        Yaml const a = o.at("attenuation");
+        check_keys(a, "attenuation");
+        m.absorption =
+            absorption(vec3(a.at("color").vector_or_number(0, 1)), a.at("distance_m").number(1e-9, 1e9));
+    }
     if (o.has("phong")) {
         Yaml const p = o.at("phong");
         check_keys(p, "phong");

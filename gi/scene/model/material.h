@@ -3,6 +3,9 @@
 
 #include "gi/scene/model/texture.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace gi {
 
 enum class MaterialModel : std::uint8_t {
@@ -32,6 +35,7 @@ struct Material {
     vec3 specular_color{1};   ///< KHR_materials_specular.specularColorFactor
     float ior = 1.5f;         ///< >= 1
     float transmission = 0;   ///< 0..1, fraction of a dielectric's non-reflected light that is transmitted
+    vec3 absorption{0};       ///< inside of closed glass (not thin), 1/m
     vec3 phong_specular{0};   ///< k_s of f = k_s (n+1)/(2 pi) (r . w)^n
     float phong_exponent = 1; ///< n >= 0
     vec3 emission{0};         ///< radiance, W/(m2 sr) = emissiveFactor * emissive_strength
@@ -59,6 +63,14 @@ GI_FN inline bool has_textures(Material const& m)
 GI_FN inline bool is_pane(Material const& m)
 {
     return m.model == MaterialModel::metal_rough && m.thin && m.transmission > 0;
+}
+
+/// Absorption coefficient (1/m) of glass in which this share of light is left after a distance (m). At most 1e9.
+inline vec3 absorption(vec3 left, double distance_m)
+{
+    vec3 a{0};
+    for (int c = 0; c < 3; ++c) a[c] = float(std::clamp(-std::log(double(left[c])) / distance_m, 0.0, 1e9));
+    return a;
 }
 
 GI_FN inline bool emits(Material const& m) { return max_component(m.emission) > 0; }

@@ -143,6 +143,7 @@ GI_FN bool StepPaths<by>::scatter_by_ray(State& s, ShadingPoint const& at, vec3 
     vec3 const direction = at.frame.to_world(sampled.wi);
     if (!is_on_one_side(at, direction, sampled.wi)) return false;
     s.throughput *= sampled.weight;
+    s.medium = medium_beyond(world, s.medium, s.triangle, at, sampled);
     s.arrival_pdf = sampled.delta ? 0 : sampled.pdf;
     if (!survives(s)) return false;
     if (!sampled.delta) ++s.scatterings;
@@ -242,6 +243,8 @@ GI_FN bool StepPaths<by>::step(State& s, PathSample& out, PathKernelCounts& loca
         s.barycentric = barycentric_at(surface, s.position);
     ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
+    float const way = s.vertex > 0 ? s.distance : glm::length(at.position - camera.origin);
+    s.throughput *= left_by_medium(world, s.medium, s.triangle, at, way);
     if (s.vertex == 0) see_first_surface(out, at, camera);
     if (free && s.note < cache.notes.count && is_directional(at.bsdf))
         cache.notes.set_word(s.note, offsetof(CacheNoteOnWay, directional) / sizeof(std::uint32_t), 1);
@@ -279,7 +282,8 @@ template <FindBy by>
 GI_FN CacheKeys StepPaths<by>::keys_of(State const& s) const
 {
     // After the last scattering, surfaces only contribute emission.
-    if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces) return {};
+    if (s.triangle == kNoPrimitive || s.scatterings == 0 || s.scatterings > bounces || s.medium != kNoMedium)
+        return {};
     Surface const& surface = world.surfaces[s.triangle];
     if (is_directional(world.bsdfs[surface.material]) ||
         (!world.emitter_pdf.empty() && world.emitter_pdf[s.triangle] > 0))

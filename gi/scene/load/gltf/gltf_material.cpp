@@ -2,6 +2,7 @@
 
 #include "gi/core/step.h"
 #include "gi/scene/load/load.h"
+#include "gi/scene/shading/bsdf.h"
 
 #include <algorithm>
 #include <cstring>
@@ -109,8 +110,15 @@ public:
         m.transmission_map = texture(transmission.find("transmissionTexture"), false);
         Properties const volume(find_extension(source.extensions, "KHR_materials_volume"));
         m.thin = !(volume.number("thicknessFactor", 0) > 0);
-        if (volume.find("attenuationDistance") != nullptr)
-            report_.lose("absorption inside of glass ignored", 1, where_);
+        if (volume.find("attenuationDistance") != nullptr) {
+            vec3 left;
+            auto const given = volume.numbers("attenuationColor", {1, 1, 1});
+            for (int c = 0; c < 3; ++c) left[c] = within(given[std::size_t(c)], 0, 1, "attenuationColor");
+            m.absorption = absorption(
+                left, within(volume.number("attenuationDistance", 0), 1e-9, 1e38, "attenuationDistance"));
+        }
+        if (m.transmission > 0 && m.roughness * m.roughness >= kSmoothAlpha)
+            report_.lose("roughness of glass ignored", 1, where_);
 
         read_specular_glossiness(
             m, Properties(find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness")));
