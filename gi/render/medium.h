@@ -9,6 +9,12 @@ namespace gi {
 /// Outside of all that absorbs.
 inline constexpr std::uint32_t kNoMedium = 0xffffffffu;
 
+/// True if the way to a surface may be one through a medium. @param medium  of the way, or kNoMedium
+GI_FN inline bool may_absorb(std::uint32_t medium, ShadingPoint const& at)
+{
+    return medium != kNoMedium || (!at.front && !at.bsdf.thin && at.bsdf.clear > 0);
+}
+
 /// Share of light that is left after a way through a medium (Beer and Lambert). What meets glass from behind without
 /// having entered it, as it began inside or left glass within glass, has passed through that.
 /// @param medium    material of the way, or kNoMedium
@@ -16,10 +22,8 @@ inline constexpr std::uint32_t kNoMedium = 0xffffffffu;
 GI_FN inline vec3 left_by_medium(WorldView const& world, std::uint32_t medium, std::uint32_t triangle,
                                  ShadingPoint const& at, float distance)
 {
-    if (medium == kNoMedium) {
-        if (at.front || at.bsdf.thin || !(at.bsdf.clear > 0)) return vec3{1};
-        medium = world.surfaces[triangle].material;
-    }
+    if (!may_absorb(medium, at)) return vec3{1};
+    if (medium == kNoMedium) medium = world.surfaces[triangle].material;
     return glm::exp(-distance * world.materials[medium].absorption);
 }
 

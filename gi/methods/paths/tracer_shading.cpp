@@ -207,8 +207,10 @@ bool PathsTracer::shade(Pass const& pass, State& s, Vertex& next, Direct& direct
         s.barycentric = barycentric_at(surface, s.position);
     ShadingPoint at = shading_point(world_, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
-    float const way = s.vertex > 0 ? next.distance : glm::length(at.position - camera_.origin);
-    s.throughput *= left_by_medium(world_, s.medium, s.triangle, at, way);
+    if (may_absorb(s.medium, at)) {
+        float const way = s.vertex > 0 ? next.distance : glm::length(at.position - camera_.origin);
+        s.throughput *= left_by_medium(world_, s.medium, s.triangle, at, way);
+    }
     if (s.open >= 0) open[std::size_t(s.open)].directional = is_directional(at.bsdf);
     if (s.vertex == 0) see_first_surface(*s.sample, at, camera_);
     if (!std::exchange(s.emitted, false) && max_component(at.emission) > 0) add_emission(s, next, at);

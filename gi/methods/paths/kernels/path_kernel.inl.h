@@ -243,8 +243,10 @@ GI_FN bool StepPaths<by>::step(State& s, PathSample& out, PathKernelCounts& loca
         s.barycentric = barycentric_at(surface, s.position);
     ShadingPoint at = shading_point(world, s.triangle, s.barycentric, s.direction);
     if (s.has_position) at.position = s.position;
-    float const way = s.vertex > 0 ? s.distance : glm::length(at.position - camera.origin);
-    s.throughput *= left_by_medium(world, s.medium, s.triangle, at, way);
+    if (may_absorb(s.medium, at)) {
+        float const way = s.vertex > 0 ? s.distance : glm::length(at.position - camera.origin);
+        s.throughput *= left_by_medium(world, s.medium, s.triangle, at, way);
+    }
     if (s.vertex == 0) see_first_surface(out, at, camera);
     if (free && s.note < cache.notes.count && is_directional(at.bsdf))
         cache.notes.set_word(s.note, offsetof(CacheNoteOnWay, directional) / sizeof(std::uint32_t), 1);
