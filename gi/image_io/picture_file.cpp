@@ -59,7 +59,7 @@ void convert_to_rec709(Picture& picture)
 
 } // namespace
 
-Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name)
+Picture decode_stored(std::span<unsigned char const> bytes, std::string const& name)
 {
     if (starts_with(bytes, "\x76\x2f\x31\x01")) {
         Picture picture = decode_exr(bytes, name);
@@ -100,8 +100,14 @@ Picture decode_picture(std::span<unsigned char const> bytes, std::string const& 
         std::memcpy(layer.data.data() + std::size_t(y) * std::size_t(linear.cols) * 3, linear.ptr<float>(y),
                     std::size_t(linear.cols) * 3 * sizeof(float));
     picture.ends_at_one = encoded;
-    if (encoded)
-        for (float& v : layer.data) v = decode_srgb(v);
+    return picture;
+}
+
+Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name)
+{
+    Picture picture = decode_stored(bytes, name);
+    if (picture.ends_at_one)
+        for (float& v : picture.layers[0].data) v = decode_srgb(v);
     return picture;
 }
 

@@ -67,6 +67,8 @@ Picture decode_hdr(std::span<unsigned char const> bytes, std::string const& name
 Picture read_picture(std::filesystem::path const& file);
 /// As above from memory; `name` is used in messages.
 Picture decode_picture(std::span<unsigned char const> bytes, std::string const& name);
+/// As above, but values of 8 and 16 bits are as they are stored, 0..1: of pictures whose values are no sRGB colours.
+Picture decode_stored(std::span<unsigned char const> bytes, std::string const& name);
 
 /// 8-bit sRGB PNG. Three display-encoded bytes per pixel, or four with alpha (colours not premultiplied).
 void write_png(std::filesystem::path const& file, int width, int height, std::span<unsigned char const> bytes);

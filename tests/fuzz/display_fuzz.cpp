@@ -68,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     viewer::summarise_views(display);
     bool const is_ascii = std::all_of(text.begin(), text.end(), [](char c) { return c > 0 && c < 127; });
     bool const has_files = std::any_of(display.walls.begin(), display.walls.end(),
-                                       [](viewer::Wall const& wall) { return !wall.warp_file.empty(); });
+                                       [](viewer::Wall const& wall) { return !files_of(wall).empty(); });
     if (is_ascii && !has_files && viewer::parse_display(viewer::to_yaml(display), "again", report) != display)
         std::abort();
     return 0;

@@ -156,12 +156,58 @@ TEST_F(Wall, BlendMapAndVertexWeightsMultiply)
     ShownPicture const picture = white(source);
     WallSettings settings;
     settings.gamma = glm::vec3(1);
-    settings.blend_map = BlendMap{kWallSize, std::vector<float>(64 * 48, 0.5f)};
-    settings.blend_map->weights[5] = 0; // sixth pixel of the top row
+    PixelMap half{kWallSize.x, kWallSize.y, std::vector<glm::vec3>(64 * 48, glm::vec3(0.5f))};
+    half.values[5] = glm::vec3(0); // sixth pixel of the top row
+    settings.blend_map = std::make_shared<PixelMap const>(half);
     for (WarpVertex& v : settings.mesh.vertices) v.weight = v.position.y;
     Bytes const seen = walled(settings, picture);
     EXPECT_EQ(int(seen[at(5, 0)]), 0);
     for (int const y : {3, 20, 45}) EXPECT_NEAR(seen[at(9, y)], 255 * 0.5 * (1 - (y + 0.5) / kWallSize.y), 0.51);
+}
+
+TEST_F(Wall, MapsOfPositionsAreFollowedPixelByPixel)
+{
+    Shown const shown;
+    WallSettings settings;
+    PixelMap turned{kWallSize.x, kWallSize.y, {}}; // by half a turn; positions count from the upper left
+    for (int y = 0; y < kWallSize.y; ++y)
+        for (int x = 0; x < kWallSize.x; ++x)
+            turned.values.push_back(
+                {1 - (float(x) + 0.5f) / float(kWallSize.x), 1 - (float(y) + 0.5f) / float(kWallSize.y), 0});
+    turned.values[7] = glm::vec3(std::numeric_limits<float>::quiet_NaN());
+    turned.values[8] = {1.1f, 0.5f, 0};
+    settings.positions = std::make_shared<PixelMap const>(turned);
+    Bytes const seen = walled(settings, shown.target.shown());
+    for (int y = 0; y < kWallSize.y; ++y)
+        for (int x = 0; x < kWallSize.x; ++x)
+            EXPECT_EQ(int(seen[at(x, y)]), y == 0 && (x == 7 || x == 8)
+                                               ? 0
+                                               : int(shown.bytes[at(kWallSize.x - 1 - x, kWallSize.y - 1 - y)]));
+}
+
+/// out = black + (1 - black) * blend * light, all linear.
+TEST_F(Wall, BlackIsRaisedInLinearLight)
+{
+    TextureTarget const source(Format::bytes, kWallSize);
+    bind(source.target());
+    glClearColor(0.5f, 0.5f, 0.5f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    auto const map = [](glm::vec3 value) {
+        return std::make_shared<PixelMap const>(
+            PixelMap{2, 2, {value, 0.5f * value, value, 0.5f * value}}); // darker to the right
+    };
+    WallSettings settings;
+    settings.blend_map = map({1, 0.5f, 0.25f});
+    settings.black_level = map({0.02f, 0, 0.3f});
+    Bytes const seen = walled(settings, source.shown());
+    double const light = std::pow(128.0 / 255, 2.2);
+    for (int const x : {3, 60})
+        for (int k = 0; k < 3; ++k) {
+            double const half = x < 32 ? 1 : 0.5, blend = half * std::array{1.0, 0.5, 0.25}[std::size_t(k)],
+                         black = half * std::array{0.02, 0.0, 0.3}[std::size_t(k)];
+            EXPECT_NEAR(seen[at(x, 20) + std::size_t(k)],
+                        255 * std::pow(black + (1 - black) * blend * light, 1 / 2.2), 0.51);
+        }
 }
 
 TEST_F(Wall, WindowsAndTexturesAreTheSameWayUp)
@@ -225,8 +271,13 @@ TEST_F(Wall, RefusesWhatIsNoWall)
     refused([](WallSettings& s) { s.blend.power = 0; });
     refused([](WallSettings& s) { s.gain.y = -1; });
     refused([](WallSettings& s) { s.gamma.z = 0; });
-    refused([](WallSettings& s) { s.blend_map = BlendMap{{2, 2}, {1, 1, 1}}; });
-    refused([](WallSettings& s) { s.blend_map = BlendMap{{1, 1}, {2}}; });
+    auto const map = [](int width, int height, std::vector<glm::vec3> values) {
+        return std::make_shared<PixelMap const>(PixelMap{width, height, std::move(values)});
+    };
+    refused([&](WallSettings& s) { s.blend_map = map(2, 2, {glm::vec3(1)}); });
+    refused([&](WallSettings& s) { s.blend_map = map(1, 1, {glm::vec3(2)}); });
+    refused([&](WallSettings& s) { s.black_level = map(1, 1, {glm::vec3(-1)}); });
+    refused([&](WallSettings& s) { s.positions = map(2, 2, {}); });
 }
 
 } // namespace

@@ -118,6 +118,9 @@ std::vector<WallSettings> wall_settings(Display const& display)
             for (WarpNode const& n : wall.warp->nodes)
                 s.mesh.vertices.push_back({glm::vec2(n.place), glm::vec2(n.picture), float(n.weight)});
         }
+        if (wall.warp_map) s.positions = wall.warp_map->map;
+        if (wall.blend_picture) s.blend_map = wall.blend_picture->light.map;
+        if (wall.black_level_picture) s.black_level = wall.black_level_picture->light.map;
         s.surface = wall.surface;
         WallFrame const frame = wall.surface ? WallFrame{{}, {}, {}, {}, 1, 1, 0} : wall_frame(wall.corners);
         WallBlend const& b = wall.blend;

@@ -62,7 +62,7 @@ std::vector<fs::path> files_read_by(ar::TrackerUse const& use)
     Display const display = load_display(use.display, ignored);
     std::vector<fs::path> files{use.display};
     for (Wall const& wall : display.walls)
-        if (!wall.warp_file.empty()) files.push_back(use.display.parent_path() / wall.warp_file);
+        for (std::string const& file : files_of(wall)) files.push_back(use.display.parent_path() / file);
     DisplayTracker const& tracker = find_tracker(display, use);
     if (tracker.type == DisplayTrackerType::file) files.push_back(file_of(tracker, use.display));
     return files;

@@ -27,8 +27,8 @@ double encoded_weight(WallBlend const& b, double weight) { return std::pow(weigh
 bool needs_finish(Wall const& wall)
 {
     WallBlend const& b = wall.blend;
-    return wall.warp || wall.gain != gi::dvec3{1} || b.left_m > 0 || b.right_m > 0 || b.top_m > 0 ||
-           b.bottom_m > 0;
+    return is_warped(wall) || wall.blend_picture || wall.black_level_picture || wall.gain != gi::dvec3{1} ||
+           b.left_m > 0 || b.right_m > 0 || b.top_m > 0 || b.bottom_m > 0;
 }
 
 } // namespace viewer

@@ -389,8 +389,8 @@ Fault sharing_fault(Display const& d)
                             fmt::format("window '{}' is on ranks {} and {}", window.name, b.rank, a.rank),
                             "one process opens a window",
                             "give its walls one rank, or each a window"};
-                    // Warp meshes place pictures within the viewport, so several such walls may share one.
-                    if (!a.warp && !b.warp && overlap(viewport_px(a, window), viewport_px(b, window)))
+                    // Meshes and maps place pictures within the viewport, so several such walls may share one.
+                    if (!is_warped(a) && !is_warped(b) && overlap(viewport_px(a, window), viewport_px(b, window)))
                         return DisplayFault{
                             "walls",
                             i,

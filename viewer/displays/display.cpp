@@ -7,6 +7,20 @@ namespace viewer {
 
 char const* name_of(Eye eye) { return eye == Eye::left ? "left" : eye == Eye::right ? "right" : "middle"; }
 
+std::vector<std::string> files_of(Wall const& wall)
+{
+    std::vector<std::string> files;
+    auto const add = [&](std::string const& file) {
+        if (!file.empty()) files.push_back(file);
+    };
+    add(wall.warp_file);
+    if (wall.warp_map) add(wall.warp_map->file);
+    if (wall.surface) add(wall.surface->points.file);
+    for (auto const* picture : {&wall.blend_picture, &wall.black_level_picture})
+        if (*picture) add((*picture)->light.file);
+    return files;
+}
+
 gi::dmat4 world_from_room(RoomPlace const& place)
 {
     return glm::translate(gi::dmat4(1), place.position_m) *

@@ -57,11 +57,19 @@ struct Wall {
     WallBlend blend;
     std::string warp_file; ///< path as written in the display file, if the mesh has its own file
     std::optional<WallMesh> warp;
+    std::optional<MapFile> warp_map; ///< instead: parse_picture_positions()
+    /// Factors on light, and the light of black: out = black + (1 - black) * blend * light, all linear.
+    std::optional<LightMap> blend_picture, black_level_picture;
     gi::dvec3 gain{1}; ///< factor on red, green and blue light
     int rank = 0;      ///< process that draws it, in a cluster
 
     bool operator==(Wall const&) const = default;
 };
+
+/// True if a calibration bends the picture, by a mesh or a map.
+inline bool is_warped(Wall const& wall) { return wall.warp || wall.warp_map; }
+/// Paths, as written in the display file, of the files of a wall's mesh, maps and pictures.
+std::vector<std::string> files_of(Wall const& wall);
 
 struct DisplayWindow {
     std::string name;

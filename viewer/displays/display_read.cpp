@@ -2,6 +2,7 @@
 #include "viewer/displays/check.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/display_keys.h"
+#include "viewer/displays/mesh_file.h"
 
 #include <fmt/format.h>
 
@@ -57,7 +58,8 @@ WallMesh read_mesh(Yaml const& y)
     return mesh;
 }
 
-void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
+/// @param aspect  width / height of the wall's viewport
+void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder, double aspect)
 {
     check_display_keys(y, "warp");
     if (!y.has("file")) {
@@ -66,8 +68,19 @@ void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
     }
     if (y.has("columns") || y.has("rows") || y.has("nodes"))
         throw y.error("warp has both a file and a mesh", "only one of them can count", "keep one");
-    wall.warp_file = y.at("file").text();
-    auto const path = folder / wall.warp_file;
+    std::string const file = y.at("file").text();
+    auto const path = folder / file;
+    std::string const kind = gi::lower_extension(path);
+    if (kind == ".pfm") {
+        wall.warp_map = {
+            file, std::make_shared<PixelMap const>(parse_picture_positions(read_map_bytes(path), path.string()))};
+        return;
+    }
+    wall.warp_file = file;
+    if (kind == ".data" || kind == ".obj") {
+        wall.warp = load_mesh_file(path, aspect);
+        return;
+    }
     auto const bytes = gi::read_bytes(path, std::size_t(1) << 20);
     Yaml const mesh = Yaml::parse({bytes.begin(), bytes.end()}, path.string(), "warp");
     mesh.only_keys({"columns", "rows", "nodes"});
@@ -75,6 +88,17 @@ void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
     if (auto const fault = find_fault(*wall.warp))
         throw mesh.error(*fault, "the picture would be torn",
                          "write nodes row by row from below, each to the right of the one before");
+}
+
+LightMap read_light(Yaml const& y, std::filesystem::path const& folder)
+{
+    check_display_keys(y, "light_picture");
+    LightMap map;
+    map.gamma = needed(y, "gamma", "2.2").number(0.1, 10);
+    map.light.file = needed(y, "file", "blend.png").text();
+    auto const path = folder / map.light.file;
+    map.light.map = std::make_shared<PixelMap const>(parse_light(read_map_bytes(path), map.gamma, path.string()));
+    return map;
 }
 
 WallBlend read_blend(Yaml const& y)
@@ -91,7 +115,7 @@ WallBlend read_blend(Yaml const& y)
     return blend;
 }
 
-Surface read_surface(Yaml const& y)
+Surface read_surface(Yaml const& y, std::filesystem::path const& folder)
 {
     check_display_keys(y, "projection");
     Surface s;
@@ -122,19 +146,31 @@ Surface read_surface(Yaml const& y)
         auto const v = numbers(y.at("projector_tangents"), 4, -kAny, kAny);
         s.mirror.projector_tangents = {v[0], v[1], v[2], v[3]};
     }
-    if (auto const f = find_fault(s))
+    if (y.has("unit_m")) s.unit_m = y.at("unit_m").number(-kAny, kAny);
+    bool const is_points = s.type == SurfaceType::points;
+    if (is_points != y.has("file"))
+        throw y.error(is_points ? "file is missing" : "a file of a projection that is no points",
+                      is_points ? "it says which point each pixel lights" : "only points are read from a file",
+                      is_points ? "file: left.pfm, with unit_m: 0.001 if it is in mm" : "type: points");
+    if (auto const f = find_fault(s); f && f->key != "file")
         throw(y.has(f->key) ? y.at(f->key) : y).error(f->problem, f->why, f->suggestion);
+    if (is_points) {
+        s.points.file = y.at("file").text();
+        auto const path = folder / s.points.file;
+        s.points.map =
+            std::make_shared<PixelMap const>(parse_points(read_map_bytes(path), s.unit_m, path.string()));
+    }
     return s;
 }
 
-void read_place(Wall& wall, Yaml const& y)
+void read_place(Wall& wall, Yaml const& y, std::filesystem::path const& folder)
 {
     if (y.has("projection")) {
         for (char const* key : {"lower_left_m", "lower_right_m", "upper_left_m"})
             if (y.has(key))
                 throw y.at(key).error("a projection and corners", "corners are those of a flat wall",
                                       "keep one of them");
-        wall.surface = read_surface(y.at("projection"));
+        wall.surface = read_surface(y.at("projection"), folder);
         return;
     }
     double const far = 10 * kFarthestCorner_m;
@@ -148,7 +184,7 @@ Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& fol
     check_display_keys(y, "wall");
     Wall wall;
     wall.name = needed(y, "name", "front").text();
-    read_place(wall, y);
+    read_place(wall, y, folder);
     wall.window = index_of(d.windows, needed(y, "window", "front"), "windows");
     if (y.has("second_window")) wall.second_window = index_of(d.windows, y.at("second_window"), "windows");
     if (y.has("user"))
@@ -180,7 +216,12 @@ Wall read_wall(Yaml const& y, Display const& d, std::filesystem::path const& fol
     if (y.has("eye")) wall.eye = y.at("eye").one_of({"left", "right"}, "eye") == 0 ? Eye::left : Eye::right;
     if (y.has("swap_eyes")) wall.swap_eyes = y.at("swap_eyes").boolean();
     if (y.has("blend")) wall.blend = read_blend(y.at("blend"));
-    if (y.has("warp")) read_warp(wall, y.at("warp"), folder);
+    if (y.has("warp")) {
+        PixelRectangle const px = viewport_px(wall, d.windows[std::size_t(wall.window)]);
+        read_warp(wall, y.at("warp"), folder, px.width > 0 && px.height > 0 ? double(px.width) / px.height : 1);
+    }
+    if (y.has("blend_picture")) wall.blend_picture = read_light(y.at("blend_picture"), folder);
+    if (y.has("black_level_picture")) wall.black_level_picture = read_light(y.at("black_level_picture"), folder);
     if (y.has("gain")) wall.gain = y.at("gain").vector_or_number(-kAny, kAny);
     if (y.has("rank")) wall.rank = int(y.at("rank").integer(0, 4095));
     return wall;

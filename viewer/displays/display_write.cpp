@@ -60,6 +60,8 @@ std::string surface_text(Surface const& s)
     if (m.projector.rotation_deg != gi::dvec3{0}) key("projector_rotation_deg", vec(m.projector.rotation_deg));
     if (auto const& t = m.projector_tangents; t != none.projector_tangents)
         key("projector_tangents", fmt::format("[{}, {}, {}, {}]", t[0], t[1], t[2], t[3]));
+    if (!s.points.file.empty()) key("file", quoted(s.points.file));
+    if (s.unit_m != 1) key("unit_m", fmt::format("{}", s.unit_m));
     return out;
 }
 
@@ -87,10 +89,15 @@ void write_wall(Writer& w, Wall const& wall, Display const& d)
     if (WallBlend const& b = wall.blend; b != WallBlend{})
         w.key("blend", fmt::format("{{left_m: {}, right_m: {}, top_m: {}, bottom_m: {}, power: {}, gamma: {}}}",
                                    b.left_m, b.right_m, b.top_m, b.bottom_m, b.power, b.gamma));
-    if (!wall.warp_file.empty())
-        w.key("warp", "{file: " + quoted(wall.warp_file) + "}");
+    std::string const warp_file = wall.warp_map ? wall.warp_map->file : wall.warp_file;
+    if (!warp_file.empty())
+        w.key("warp", "{file: " + quoted(warp_file) + "}");
     else if (wall.warp)
         w.key("warp", mesh_text(*wall.warp));
+    for (auto const& [key, picture] :
+         {std::pair{"blend_picture", &wall.blend_picture}, {"black_level_picture", &wall.black_level_picture}})
+        if (*picture)
+            w.key(key, fmt::format("{{file: {}, gamma: {}}}", quoted((*picture)->light.file), (*picture)->gamma));
     if (wall.gain != gi::dvec3{1}) w.key("gain", vec(wall.gain));
     if (wall.rank != 0) w.key("rank", std::to_string(wall.rank));
 }

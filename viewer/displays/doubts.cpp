@@ -73,7 +73,7 @@ void report_gaps(std::vector<Wall const*> const& walls, std::vector<WallFrame> c
             if (glm::distance(frames[i].point(0, 0), frames[j].point(0, 0)) +
                     glm::distance(frames[i].point(1, 1), frames[j].point(1, 1)) <
                 kTouch_m) {
-                if (walls[i]->eye == walls[j]->eye && walls[i]->user == walls[j]->user && !walls[i]->warp)
+                if (walls[i]->eye == walls[j]->eye && walls[i]->user == walls[j]->user && !is_warped(*walls[i]))
                     report.lose("walls in one place: is one of them copied?", 1,
                                 fmt::format("'{}' and '{}'", walls[j]->name, walls[i]->name));
                 continue;
@@ -110,7 +110,7 @@ void report_sizes(std::vector<Wall const*> const& walls, std::vector<WallFrame> 
         double const shape = double(px.width) / f.width_m / (double(px.height) / f.height_m);
         bool const is_halved =
             walls[i]->stereo == StereoMode::side_by_side || walls[i]->stereo == StereoMode::top_bottom;
-        if (!is_halved && !walls[i]->warp && (shape > 1.25 || shape < 0.8))
+        if (!is_halved && !is_warped(*walls[i]) && (shape > 1.25 || shape < 0.8))
             report.lose("walls whose pixels are far from square", 1,
                         fmt::format("'{}', {:.3g} x {:.3g} m by {} x {} pixels", walls[i]->name, f.width_m,
                                     f.height_m, px.width, px.height));
@@ -185,7 +185,7 @@ void report_doubts(Display const& d, gi::Report& report)
     for (std::size_t i = 0; i < frames.size(); ++i)
         for (std::size_t j = 0; j < frames.size(); ++j) {
             double const overlap_width = i == j ? 0 : overlap_m(frames[i], frames[j]);
-            if (overlap_width < 1e-3) continue;
+            if (overlap_width < 1e-3 || flat[i]->blend_picture || flat[j]->blend_picture) continue;
             double const slack = 0.01 + 0.02 * overlap_width;
             if (std::abs(flat[i]->blend.right_m - overlap_width) > slack ||
                 std::abs(flat[j]->blend.left_m - overlap_width) > slack)

@@ -79,6 +79,8 @@ std::optional<gi::dvec3> in_frame(Surface const& s, double aspect, glm::dvec2 uv
     }
     case SurfaceType::equirectangular:
         return size * sphere_direction(between(s.azimuths_deg, uv.x), between(s.elevations_deg, uv.y));
+    case SurfaceType::points:
+        return s.points.map ? value_at(*s.points.map, uv) : std::nullopt;
     case SurfaceType::spherical_mirror:
         break;
     }
@@ -96,6 +98,8 @@ char const* name_of(SurfaceType type)
         return "cylindrical";
     case SurfaceType::equirectangular:
         return "equirectangular";
+    case SurfaceType::points:
+        return "points";
     case SurfaceType::spherical_mirror:
         break;
     }
@@ -107,8 +111,23 @@ std::optional<SurfacePoint> surface_point(Surface const& s, double aspect, glm::
     auto const at = in_frame(s, aspect, uv);
     if (!at) return {};
     RoomPose const pose = pose_of(s.place);
-    if (s.radius_m > 0) return SurfacePoint{pose.position + pose.rotation * *at, false};
+    if (s.radius_m > 0 || s.type == SurfaceType::points)
+        return SurfacePoint{pose.position + pose.rotation * *at, false};
     return SurfacePoint{pose.rotation * *at, true};
+}
+
+double distance_of(Surface const& s, gi::dvec3 eye)
+{
+    if (s.type != SurfaceType::points) return s.radius_m;
+    constexpr int kAlong = 64; // each side
+    double nearest = 0;
+    for (int j = 0; j < kAlong; ++j)
+        for (int i = 0; i < kAlong; ++i)
+            if (auto const p = surface_point(s, 1, {(i + 0.5) / kAlong, (j + 0.5) / kAlong})) {
+                double const m = glm::distance(p->at, eye);
+                if (nearest == 0 || m < nearest) nearest = m;
+            }
+    return nearest;
 }
 
 gi::dvec3 direction_to(SurfacePoint const& point, gi::dvec3 eye)
@@ -133,6 +152,12 @@ std::optional<SurfaceFault> find_fault(Surface const& s)
     if (s.radius_m == 0 && (is_mirror || s.type == SurfaceType::cylindrical))
         return SurfaceFault{"radius_m", "radius_m is missing",
                             std::string(name_of(s.type)) + " needs the size of the surface", "radius_m: 5"};
+    if (s.type == SurfaceType::points && !s.points.map)
+        return SurfaceFault{"file", "file is missing", "it says which point each pixel lights",
+                            "file: left.pfm, with unit_m: 0.001 if it is in mm"};
+    if (!within(s.unit_m, 1e-6, 1e6))
+        return SurfaceFault{"unit_m", fmt::format("a unit of {:g} m", s.unit_m), "1e-6 to 1e6 are handled",
+                            "0.001 for millimetres, 0.01 for centimetres"};
     if (!within(s.fov_deg, 1, 360))
         return SurfaceFault{"fov_deg", fmt::format("a field of view of {:g} degrees", s.fov_deg),
                             "1 to 360 degrees are handled", "180 is a hemisphere"};

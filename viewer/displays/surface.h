@@ -13,7 +13,9 @@
 // equirectangular: u goes over the azimuths, v over the elevations of a sphere.
 // spherical_mirror: a projector lights a mirrored ball, which lights a sphere from within (P. Bourke, "Using a
 //   spherical mirror for projection into immersive environments", 2005). A ray that misses the ball is dark.
+// points: a calibration says which point of the frame each pixel lights.
 
+#include "viewer/displays/pixel_map.h"
 #include "viewer/displays/placement.h"
 
 #include <array>
@@ -23,9 +25,10 @@
 
 namespace viewer {
 
-enum class SurfaceType { fisheye, cylindrical, equirectangular, spherical_mirror };
+enum class SurfaceType { fisheye, cylindrical, equirectangular, spherical_mirror, points };
 inline constexpr std::array kSurfaceTypes{SurfaceType::fisheye, SurfaceType::cylindrical,
-                                          SurfaceType::equirectangular, SurfaceType::spherical_mirror};
+                                          SurfaceType::equirectangular, SurfaceType::spherical_mirror,
+                                          SurfaceType::points};
 /// "spherical-mirror"
 char const* name_of(SurfaceType type);
 
@@ -57,6 +60,8 @@ struct Surface {
     glm::dvec2 heights_m{-1, 1};          ///< cylindrical: bottom, top
     std::optional<ViewportCircle> circle; ///< fisheye; none = the largest that fits, in the middle
     SphericalMirror mirror;
+    MapFile points;    ///< points: of the frame, m, as parse_points() reads them
+    double unit_m = 1; ///< of the points' file
 
     bool operator==(Surface const&) const = default;
 };
@@ -69,6 +74,9 @@ struct SurfacePoint {
 
 /// @param aspect  width / height of the viewport. None: the point lights nothing of the surface.
 std::optional<SurfacePoint> surface_point(Surface const& surface, double aspect, glm::dvec2 uv);
+/// How far the surface is: its radius, or for points the distance of the nearest of some of them from `eye_m` (room), m;
+/// 0 if it is infinitely far away or nothing is lit.
+double distance_of(Surface const& surface, gi::dvec3 eye_m);
 /// Unit vector in the room from an eye towards what the point shows; (0, 0, 0) for an eye at the point.
 gi::dvec3 direction_to(SurfacePoint const& point, gi::dvec3 eye_m);
 

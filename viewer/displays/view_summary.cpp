@@ -18,7 +18,8 @@ std::vector<ViewSummary> summarise_views(Display const& display)
         if (wall.surface) {
             gi::ViewTangents const t = *view.camera->off_axis;
             double const at_middle = glm::radians(1.0) * view.width_px / (t.right - t.left);
-            out.push_back({view, 0, 0, wall.surface->radius_m,
+            gi::dvec3 const eye(view.camera->world_from_camera[3]);
+            out.push_back({view, 0, 0, distance_of(*wall.surface, eye),
                            glm::degrees(std::atan(t.right) - std::atan(t.left)),
                            glm::degrees(std::atan(t.top) - std::atan(t.bottom)), at_middle, at_middle});
             continue;

@@ -101,7 +101,7 @@ std::vector<FaceView> faces_of(Display const& d, Wall const& wall)
     gi::dvec3 const rest = eyes_of(user, resting_head(user)).middle;
     std::vector<gi::dvec3> eyes{rest};
     double const reach = user.tracker < 0 ? 0.1 : kReach_m;
-    double const far = std::min(reach, kShare * wall.surface->radius_m);
+    double const far = std::min(reach, kShare * distance_of(*wall.surface, rest));
     if (far > 0)
         for (int corner = 0; corner < 8; ++corner)
             eyes.push_back(rest + far * gi::dvec3{corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1});

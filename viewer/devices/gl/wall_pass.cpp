@@ -43,15 +43,40 @@ void check_blend(WallSettings const& s)
             throw gi::InputError(fmt::format("a display gamma of {}", s.gamma[k]), "it is an exponent",
                                  "give a positive number; 2.2 is usual");
     }
-    if (!s.blend_map) return;
-    BlendMap const& m = *s.blend_map;
-    bool const fits = m.size_px.x > 0 && m.size_px.y > 0 &&
-                      m.weights.size() == std::size_t(m.size_px.x) * std::size_t(m.size_px.y);
-    bool const in_range = std::ranges::all_of(m.weights, [](float w) { return w >= 0 && w <= 1; });
-    if (!fits || !in_range)
-        throw gi::InputError(
-            fmt::format("a blend map of {} x {} with {} weights", m.size_px.x, m.size_px.y, m.weights.size()),
-            "it needs one per pixel, each in 0 to 1", "correct the map");
+    for (auto const& [map, is_light] :
+         {std::pair{s.blend_map.get(), true}, {s.black_level.get(), true}, {s.positions.get(), false}}) {
+        if (!map) continue;
+        bool const fits = map->width > 0 && map->height > 0 &&
+                          map->values.size() == std::size_t(map->width) * std::size_t(map->height);
+        auto const is_share = [](glm::vec3 const& v) {
+            return glm::all(glm::greaterThanEqual(v, glm::vec3(0))) &&
+                   glm::all(glm::lessThanEqual(v, glm::vec3(1)));
+        };
+        if (!fits || (is_light && !std::ranges::all_of(map->values, is_share)))
+            throw gi::InputError(
+                fmt::format("a map of {} x {} with {} values", map->width, map->height, map->values.size()),
+                "it needs one per pixel, shares of light within 0 to 1", "correct the map");
+    }
+}
+
+/// A texture of a map, or of the single value `otherwise`.
+GlObject map_texture(PixelMap const* map, glm::vec3 otherwise)
+{
+    glm::ivec2 const size = map ? glm::ivec2(map->width, map->height) : glm::ivec2(1);
+    GlObject texture = texture_2d(GL_RGB32F, size, GL_NEAREST);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    glTextureSubImage2D(texture.id(), 0, 0, 0, size.x, size.y, GL_RGB, GL_FLOAT,
+                        map ? map->values.data() : &otherwise);
+    return texture;
+}
+
+/// Places in the picture from its lower left, and 1 where there is one: (0, 0, 0) where there is none, so that the
+/// sum of neighbours over the sum of their third numbers is the mean of those that are there.
+PixelMap places_of(PixelMap const& positions)
+{
+    PixelMap places = positions;
+    for (glm::vec3& v : places.values) v = has_value(v) ? glm::vec3(v.x, 1 - v.y, 1) : glm::vec3(0);
+    return places;
 }
 
 std::vector<unsigned> grid_triangles(int columns, int rows)
@@ -95,12 +120,13 @@ WallPass::WallPass(WallSettings const& settings)
     attribute(1, 2, offsetof(WarpVertex, picture));
     attribute(2, 1, offsetof(WarpVertex, weight));
 
-    float const all = 1;
-    BlendMap const* const map = settings_.blend_map ? &*settings_.blend_map : nullptr;
-    glm::ivec2 const size = map ? map->size_px : glm::ivec2(1);
-    map_ = texture_2d(GL_R32F, size, GL_NEAREST);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    glTextureSubImage2D(map_.id(), 0, 0, 0, size.x, size.y, GL_RED, GL_FLOAT, map ? map->weights.data() : &all);
+    map_ = map_texture(settings_.blend_map.get(), glm::vec3(1));
+    black_ = map_texture(settings_.black_level.get(), glm::vec3(0));
+    std::optional<PixelMap> places;
+    if (settings_.positions) places = places_of(*settings_.positions);
+    positions_ = map_texture(places ? &*places : nullptr, glm::vec3(0));
+    program_.set("has_positions", settings_.positions ? 1.0f : 0.0f);
+    program_.set("has_black_level", settings_.black_level ? 1.0f : 0.0f);
 
     EdgeBlend const& b = settings_.blend;
     program_.set("overlap", glm::vec4(b.left, b.right, b.bottom, b.top));
@@ -122,6 +148,8 @@ void WallPass::draw(DrawTarget const& target, ShownPicture const& encoded, Outsi
     program_.set("up", target.rows == RowOrder::top_last ? 1.0f : -1.0f);
     glBindTextureUnit(0, encoded.texture);
     glBindTextureUnit(1, map_.id());
+    glBindTextureUnit(2, black_.id());
+    glBindTextureUnit(3, positions_.id());
     program_.use();
     glBindVertexArray(vertices_.id());
     glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);

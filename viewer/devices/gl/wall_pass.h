@@ -1,6 +1,6 @@
 #pragma once
 // Prepares a finished eye's picture for a projected wall: warps it by a mesh, fades it where projectors overlap,
-// and matches its colours to the neighbours'. Input and output are display-encoded; gain and weight multiply the
+// matches its colours to the neighbours', and raises its black to theirs. Input and output are display-encoded; gain and weight multiply the
 // light, which is v^gamma for a value v.
 //
 // Order for interlaced stereo on warped walls: each eye through the display pass into a TextureTarget, then
@@ -45,18 +45,14 @@ struct EdgeBlend {
     bool operator==(EdgeBlend const&) const = default;
 };
 
-/// Light weights from a calibration tool, one float per pixel, rows from the top, stretched over the picture.
-struct BlendMap {
-    glm::ivec2 size_px{};
-    std::vector<float> weights;
-
-    bool operator==(BlendMap const&) const = default;
-};
-
 struct WallSettings {
     WarpMesh mesh;
     EdgeBlend blend;
-    std::optional<BlendMap> blend_map; ///< multiplied with the formula
+    // Maps of a calibration over the target's pixels; null = none.
+    std::shared_ptr<PixelMap const>
+        positions{}; ///< in the picture (parse_picture_positions()), in place of the mesh's
+    std::shared_ptr<PixelMap const> blend_map{};   ///< factors on light, 0..1, multiplied with the formula
+    std::shared_ptr<PixelMap const> black_level{}; ///< light of black, 0..1: out = black + (1 - black) * light
     glm::vec3 gain{1};                 ///< factor on light, per channel, >= 0; values above white are clipped
     glm::vec3 gamma{2.2f};             ///< of the display, > 0
     std::optional<Surface> surface{};  ///< of a wall that is not flat: a SurfacePass goes before
@@ -68,10 +64,10 @@ struct WallSettings {
 class WallPass {
 public:
     /// Throws InputError on a mesh with fewer than 2 x 2 vertices or the wrong number of vertices, non-finite
-    /// values, overlaps larger than the picture, and gains or gammas out of range.
+    /// values, overlaps larger than the picture, and gains, gammas or maps of light out of range.
     explicit WallPass(WallSettings const& settings);
     enum class Outside { black, kept };
-    /// Draws the picture with bilinear filtering; outside the mesh it is black, or what was there stays, for walls
+    /// Draws the picture with bilinear filtering; outside the mesh and where `positions` has none it is black, or what was there stays, for walls
     /// that share a viewport. If mesh, size, blend and gain have no effect, its bytes stay unchanged.
     void draw(DrawTarget const& target, ShownPicture const& encoded, Outside outside = Outside::black) const;
 
@@ -79,7 +75,7 @@ private:
     WallSettings settings_;
     GlProgram program_;
     GlObject vertices_{GlObject::Kind::vertex_array}, buffer_{GlObject::Kind::buffer},
-        indices_{GlObject::Kind::buffer}, map_;
+        indices_{GlObject::Kind::buffer}, map_, black_, positions_;
     int index_count_ = 0;
 };
 
