@@ -763,9 +763,9 @@ TEST(ImportNDisplay, OlderText)
     // Its first line distinguishes it from Vrui's.
     auto const file = std::filesystem::temp_directory_path() / "lightwell_ndisplay_test.cfg";
     gi::write_text(file, text);
-    std::vector<SkippedPart> parts;
-    EXPECT_EQ(import_display(file, {}, report, &parts), parse_ndisplay_cfg(text, file.string(), report));
-    EXPECT_EQ(parts.size(), log.parts().size());
+    ImportLog const again(report);
+    EXPECT_EQ(import_display(file, {}, again), parse_ndisplay_cfg(text, file.string(), report));
+    EXPECT_EQ(again.parts().size(), log.parts().size());
     std::filesystem::remove(file);
 }
 

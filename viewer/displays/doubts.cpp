@@ -172,7 +172,7 @@ void report_doubts(Display const& d, gi::Report& report)
     std::vector<WallFrame> frames;
     std::vector<Wall const*> flat;
     for (Wall const& wall : d.walls)
-        if (!wall.surface) {
+        if (!wall.surface && !wall.warp_map) { // whose corners are those of its picture, not of the screen
             frames.push_back(wall_frame(wall.corners));
             flat.push_back(&wall);
         }

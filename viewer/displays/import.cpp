@@ -1,6 +1,7 @@
 #include "viewer/displays/import.h"
 
 #include "gi/core/file.h"
+#include "viewer/displays/calibration.h"
 #include "viewer/displays/check.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/import_common.h"
@@ -25,11 +26,31 @@ char const* name_of(DisplayFormat format)
         return "Vrui";
     case DisplayFormat::ndisplay:
         return "nDisplay";
+    case DisplayFormat::mpcdi:
+        return "MPCDI";
     case DisplayFormat::yaml:
         break;
     }
     return "Lightwell";
 }
+
+namespace {
+
+/// By the name of the first element.
+DisplayFormat format_of_xml(std::filesystem::path const& file)
+{
+    constexpr std::size_t kMostXmlBytes = std::size_t(1) << 20;
+    std::string const text = gi::read_text(file, kMostXmlBytes);
+    std::size_t at = 0;
+    while ((at = text.find('<', at)) != std::string::npos && text.compare(at, 4, "<!--") == 0)
+        at = text.find("-->", at);
+    while (at != std::string::npos && at + 1 < text.size() && (text[at + 1] == '?' || text[at + 1] == '!'))
+        at = text.find('<', at + 1);
+    return at != std::string::npos && text.compare(at, 6, "<MPCDI") == 0 ? DisplayFormat::mpcdi
+                                                                         : DisplayFormat::sgct;
+}
+
+} // namespace
 
 DisplayFormat format_of(std::filesystem::path const& file)
 {
@@ -40,13 +61,14 @@ DisplayFormat format_of(std::filesystem::path const& file)
                                         {".xml", DisplayFormat::sgct},
                                         {".ndisplay", DisplayFormat::ndisplay},
                                         {".pvx", DisplayFormat::pvx},
+                                        {".mpcdi", DisplayFormat::mpcdi},
                                         {".eqc", DisplayFormat::equalizer},
                                         {".cfg", DisplayFormat::vrui}})
-        if (end == known) return format;
+        if (end == known) return format == DisplayFormat::sgct && end == ".xml" ? format_of_xml(file) : format;
     throw gi::InputError(
         "'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
         ".yaml (ours), .json and .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui, nDisplay), "
-        ".ndisplay");
+        ".ndisplay, .mpcdi and mpcdi.xml");
 }
 
 namespace {
@@ -72,7 +94,13 @@ bool is_ndisplay_cfg(std::string const& text)
 Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportLog const& log)
 {
     DisplayFormat const format = format_of(file);
-    std::string const text = text_of(file), name = file.string();
+    std::string name = file.string();
+    if (format == DisplayFormat::mpcdi && file.extension() != ".xml") {
+        CalibrationFiles const archive = CalibrationFiles::of_archive(file);
+        std::string const xml = mpcdi_text(archive, file, name);
+        return display_of(read_mpcdi(xml, name, archive, o.prefix, log), name, log);
+    }
+    std::string const text = text_of(file);
     bool const is_vrui = format == DisplayFormat::vrui && !is_ndisplay_cfg(text);
     if (!is_vrui && !(o.section.empty() && o.base_file.empty()))
         throw gi::InputError("a section or base file of " + name, "only configurations of Vrui have them",
@@ -86,6 +114,9 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
         return parse_equalizer(text, name, log);
     case DisplayFormat::ndisplay:
         return parse_ndisplay(text, name, log);
+    case DisplayFormat::mpcdi:
+        return display_of(read_mpcdi(text, name, CalibrationFiles::of_folder(file.parent_path()), o.prefix, log),
+                          name, log);
     case DisplayFormat::vrui:
         if (!is_vrui) return parse_ndisplay_cfg(text, name, log);
         if (o.base_file.empty()) return parse_vrui(text, name, o.section, log);
@@ -105,13 +136,19 @@ void ImportLog::lose(std::string const& what, std::uint64_t count, std::string c
     if (parts_->size() < kMost) parts_->push_back({what, where});
 }
 
-Display import_display(std::filesystem::path const& file, ImportOptions const& options, gi::Report& report,
-                       std::vector<SkippedPart>* parts)
+void ImportLog::keep_file(std::string const& name, std::vector<unsigned char> bytes) const
 {
-    ImportLog const log(report);
-    Display display = parse(file, options, log);
-    if (parts) *parts = log.parts();
-    return display;
+    files_->push_back({name, std::move(bytes)});
+}
+
+bool ImportLog::has_file(std::string const& name) const
+{
+    return std::ranges::any_of(*files_, [&](KeptFile const& f) { return f.name == name; });
+}
+
+Display import_display(std::filesystem::path const& file, ImportOptions const& options, ImportLog const& log)
+{
+    return parse(file, options, log);
 }
 
 double imported_eyes(double metres, std::string const& where, ImportLog const& log)

@@ -11,6 +11,7 @@
 //   inchScale or meterScale. Patch files need the configuration that they change.
 // - nDisplay .ndisplay (JSON, cm) and its older .cfg (m): x forward, y to the right, z up;
 //   screens by centre and size.
+// - Calibrations of projectors: calibration.h.
 //
 // Viewports of SGCT and Equalizer count from the window's lower left corner, ours from the top left corner.
 
@@ -25,15 +26,21 @@
 
 namespace viewer {
 
-enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay };
+enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay, mpcdi };
 char const* name_of(DisplayFormat format);
-/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay.
-/// Throws InputError for others.
+/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay, .mpcdi; of .xml by its first
+/// element. Throws InputError for others.
 DisplayFormat format_of(std::filesystem::path const& file);
 
 /// Something in a file that has no equivalent here, or that had to be assumed.
 struct SkippedPart {
     std::string what, where; ///< where: "file:line:column"
+};
+
+/// A map or picture that the display file names.
+struct KeptFile {
+    std::string name; ///< path as the display file writes it
+    std::vector<unsigned char> bytes;
 };
 
 /// Counts in a report, and lists, what an importer could not take over.
@@ -43,10 +50,14 @@ public:
     void lose(std::string const& what, std::uint64_t count, std::string const& where) const;
     std::vector<SkippedPart> const& parts() const { return *parts_; } ///< the first 10,000
     gi::Report& report() const { return *report_; }
+    void keep_file(std::string const& name, std::vector<unsigned char> bytes) const;
+    bool has_file(std::string const& name) const;
+    std::vector<KeptFile> const& files() const { return *files_; } ///< to be written beside the display file
 
 private:
     gi::Report* report_;
     std::shared_ptr<std::vector<SkippedPart>> parts_ = std::make_shared<std::vector<SkippedPart>>();
+    std::shared_ptr<std::vector<KeptFile>> files_ = std::make_shared<std::vector<KeptFile>>();
 };
 
 /// Each throws InputError, with file:line:column if known, if the text is not of the format or the display is
@@ -70,9 +81,9 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
 struct ImportOptions {
     std::string section{};             ///< Vrui
     std::filesystem::path base_file{}; ///< Vrui: configuration that the file changes; empty = none
+    std::string prefix{};              ///< of the names of files that the display file names: a folder and a slash
 };
-/// Imports any format, including ours, by file extension. If `parts` is not null, it receives what was skipped.
-Display import_display(std::filesystem::path const& file, ImportOptions const& options, gi::Report& report,
-                       std::vector<SkippedPart>* parts = nullptr);
+/// Imports any format, including ours, by file extension. The log has what was skipped, and the files to write.
+Display import_display(std::filesystem::path const& file, ImportOptions const& options, ImportLog const& log);
 
 } // namespace viewer

@@ -123,12 +123,29 @@ std::string skipped_comment(std::string const& file, std::vector<SkippedPart> co
     return text;
 }
 
+/// Maps and pictures beside the display file. Throws InputError if they cannot be written.
+void write_kept(std::vector<KeptFile> const& files, std::filesystem::path const& folder)
+{
+    for (KeptFile const& file : files) {
+        std::filesystem::path const path = folder / file.name;
+        std::error_code failure;
+        std::filesystem::create_directories(path.parent_path(), failure);
+        if (failure)
+            throw gi::InputError("the folder " + path.parent_path().string() + " cannot be made",
+                                 failure.message(), "name another --out");
+        gi::write_text(path, {reinterpret_cast<char const*>(file.bytes.data()), file.bytes.size()});
+    }
+}
+
 int run_import(DisplayOptions const& o)
 {
     check_outputs({o.out}, {o.file});
     gi::Report report;
-    std::vector<SkippedPart> skipped;
-    Display const d = import_display(o.file, {o.section, o.base}, report, &skipped);
+    ImportLog const log(report);
+    std::filesystem::path const out(o.out), folder = out.parent_path();
+    Display const d = import_display(o.file, {o.section, o.base, out.stem().string() + "_files/"}, log);
+    std::vector<SkippedPart> const& skipped = log.parts();
+    write_kept(log.files(), folder);
     gi::write_text(o.out, skipped_comment(o.file, skipped) + to_yaml(d));
     if (o.json) {
         nlohmann::ordered_json j{{"out", o.out},
@@ -136,6 +153,7 @@ int run_import(DisplayOptions const& o)
                                  {"walls", d.walls.size()},
                                  {"windows", d.windows.size()},
                                  {"users", d.users.size()},
+                                 {"files", log.files().size()},
                                  {"not_imported", nlohmann::ordered_json::array()}};
         for (SkippedPart const& part : skipped)
             j["not_imported"].push_back({{"what", part.what}, {"where", part.where}});
@@ -143,8 +161,10 @@ int run_import(DisplayOptions const& o)
         std::fputs(to_text(j).c_str(), stdout);
         return 0;
     }
-    fmt::print("{}: {} walls, {} windows, {} users, from a configuration of {}\n", o.out, d.walls.size(),
-               d.windows.size(), d.users.size(), name_of(format_of(o.file)));
+    fmt::print("{}: {} walls, {} windows, {} users{}, from a configuration of {}\n", o.out, d.walls.size(),
+               d.windows.size(), d.users.size(),
+               log.files().empty() ? "" : fmt::format(", {} maps and pictures", log.files().size()),
+               name_of(format_of(o.file)));
     std::fflush(stdout);
     print_losses(report);
     return 0;
@@ -232,9 +252,10 @@ void add_display(CLI::App& app, int& exit_code)
     import
         ->add_option("FILE", o->file,
                      ".json or .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui or\n"
-                     "nDisplay's text) or .ndisplay")
+                     "nDisplay's text), .ndisplay, .mpcdi or mpcdi.xml")
         ->required();
-    import->add_option("-o,--out", o->out, "display file to write")->required();
+    import->add_option("-o,--out", o->out, "display file to write; maps and pictures go to a folder beside it")
+        ->required();
     import->add_flag("--json", o->json, "print JSON, with all that was not imported or assumed");
     import->add_option("--section", o->section, "Vrui only: name of the environment, usually that of a machine");
     import->add_option("--base", o->base, "Vrui only: configuration that FILE changes, usually its Vrui.cfg");

@@ -1,0 +1,57 @@
+#include "viewer/displays/calibration.h"
+
+#include "viewer/displays/import_common.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace viewer {
+
+std::string keep_map(std::string const& prefix, std::string const& projector, std::string const& what,
+                     std::vector<unsigned char> bytes, ImportLog const& log)
+{
+    std::string plain;
+    for (char const c : projector.substr(0, 64))
+        plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '_';
+    std::size_t const dot = what.rfind('.');
+    std::string name = prefix + plain + "_" + what;
+    for (int n = 2; log.has_file(name); ++n)
+        name = prefix + plain + fmt::format("_{}_{}{}", what.substr(0, dot), n, what.substr(dot));
+    log.keep_file(name, std::move(bytes));
+    return name;
+}
+
+Display display_of(std::vector<CalibratedProjector> projectors, std::string const& file, ImportLog const& log)
+{
+    Display d;
+    std::vector<gi::dvec3> eyes;
+    int x_px = 0;
+    for (CalibratedProjector& p : projectors) {
+        DisplayWindow window;
+        window.name = free_name(d.windows, p.wall.name);
+        window.width_px = p.size_px.x;
+        window.height_px = p.size_px.y;
+        window.x_px = x_px;
+        window.borders = false;
+        x_px += p.size_px.x;
+        auto const eye = std::ranges::find(eyes, p.eye_m);
+        p.wall.user = int(eye - eyes.begin());
+        if (eye == eyes.end()) {
+            User user;
+            user.name = free_name(d.users, "eye");
+            user.head.translation_m = p.eye_m;
+            eyes.push_back(p.eye_m);
+            d.users.push_back(user);
+        }
+        p.wall.window = int(d.windows.size());
+        p.wall.name = free_name(d.walls, p.wall.name);
+        d.windows.push_back(window);
+        d.walls.push_back(std::move(p.wall));
+    }
+    if (!projectors.empty())
+        log.lose("the calibration does not say where its windows are: taken as side by side, drawn by one process",
+                 1, file);
+    return finished(std::move(d), file, log);
+}
+
+} // namespace viewer
