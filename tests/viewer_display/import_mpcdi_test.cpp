@@ -2,6 +2,7 @@
 
 #include "tests/viewer_display/calibration_samples.h"
 #include "tests/viewer_display/display_samples.h"
+#include "tests/viewer_display/zip_sample.h"
 #include "viewer/displays/calibration.h"
 
 #include <array>
