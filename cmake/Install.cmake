@@ -79,7 +79,7 @@ endif()
 
 # For programs of one's own: find_package(lightwell), then link lightwell::gi or lightwell::study.
 set(of_gi gi_core gi_image_io gi_scene gi_scene_io gi_filter gi_raster gi_bvh gi_render gi_surfaces gi_light_paths gi_methods)
-set(of_study study_display study_adaptive study_design study_stats study_run study_tables study_report)
+set(of_study study_display study_adaptive study_design study_stats study_run study_tables study_gaze study_report)
 install(TARGETS lightwell_options ${of_gi} ${of_study} EXPORT lightwell COMPONENT dev
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/lightwell)

@@ -40,6 +40,13 @@ double deg_of_place(ScreenGeometry const& s, double px, bool is_down)
     return std::atan(px / px_per_cm(s, is_down) / s.distance_cm) / kDegree;
 }
 
+std::array<double, 3> direction_of_place(ScreenGeometry const& s, std::pair<double, double> px)
+{
+    double const x = px.first / px_per_cm(s, false), y = px.second / px_per_cm(s, true);
+    double const length = std::hypot(x, y, s.distance_cm);
+    return {x / length, y / length, s.distance_cm / length};
+}
+
 double deg_between(ScreenGeometry const& s, std::pair<double, double> a, std::pair<double, double> b)
 {
     double const ax = a.first / px_per_cm(s, false), ay = a.second / px_per_cm(s, true);

@@ -3,6 +3,8 @@
 
 #include "study/display/display_model.h"
 
+#include <array>
+
 namespace study {
 
 /// Pixels per centimetre, across and down.
@@ -15,6 +17,8 @@ double px_of_size(ScreenGeometry const& screen, double deg, bool is_down);
 double px_of_place(ScreenGeometry const& screen, double deg, bool is_down);
 /// Direction of a place, degrees from the centre. @param px  from the centre, to the right or down
 double deg_of_place(ScreenGeometry const& screen, double px, bool is_down);
+/// From the eyes to a place, of length 1: x to the right, y down, z into the screen. @param px  from the centre
+std::array<double, 3> direction_of_place(ScreenGeometry const& screen, std::pair<double, double> px);
 /// Angle between the directions of two places, degrees. @param a, b  from the centre, px (x to the right, y down)
 double deg_between(ScreenGeometry const& screen, std::pair<double, double> a, std::pair<double, double> b);
 /// Angles that the whole screen takes, across and down.
