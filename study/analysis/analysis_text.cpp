@@ -1,6 +1,7 @@
 #include "gi/core/text.h"
 #include "study/analysis/result_tables.h"
 #include "study/analysis/shown.h"
+#include "study/analysis/table_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +29,13 @@ std::string to_text(Analysis const& a)
     std::string out = fmt::format("{}: {} participants of {} planned, {} sessions, {} complete\n", a.experiment,
                                   a.participants, a.planned, a.sessions, a.complete);
     for (std::string const& c : a.cautions) out += "caution: " + c + "\n";
-    std::string left_out;
-    for (ResultTable const& r : result_tables(a)) {
+    return out + tables_text(result_tables(a));
+}
+
+std::string tables_text(std::span<ResultTable const> tables)
+{
+    std::string out, left_out;
+    for (ResultTable const& r : tables) {
         if (r.is_long) {
             left_out += fmt::format("{}{} ({})", left_out.empty() ? "" : ", ", r.name, r.table.rows.size());
             continue;
@@ -50,6 +56,21 @@ std::string to_text(Analysis const& a)
     }
     if (!left_out.empty()) out += "\nrows only in --json and --out: " + left_out + "\n";
     return out;
+}
+
+void add_tables(Json& to, std::span<ResultTable const> tables)
+{
+    for (ResultTable const& r : tables) {
+        Json rows = Json::array();
+        for (auto const& row : r.table.rows) {
+            Json object = Json::object();
+            for (std::size_t c = 0; c < row.size(); ++c)
+                object[r.table.columns[c].name] = json_of(r.table.columns[c], row[c]);
+            rows.push_back(std::move(object));
+        }
+        to["tables"][r.name] = std::move(rows);
+        for (Column const& c : r.table.columns) to["columns"][r.name][c.name] = c.description;
+    }
 }
 
 std::string to_json(Analysis const& a)
@@ -79,17 +100,7 @@ std::string to_json(Analysis const& a)
              {"confidence", a.settings.confidence},
              {"seed", a.settings.seed}}},
            {"cautions", a.cautions}};
-    for (ResultTable const& r : result_tables(a)) {
-        Json rows = Json::array();
-        for (auto const& row : r.table.rows) {
-            Json object = Json::object();
-            for (std::size_t c = 0; c < row.size(); ++c)
-                object[r.table.columns[c].name] = json_of(r.table.columns[c], row[c]);
-            rows.push_back(std::move(object));
-        }
-        j["tables"][r.name] = std::move(rows);
-        for (Column const& c : r.table.columns) j["columns"][r.name][c.name] = c.description;
-    }
+    add_tables(j, result_tables(a));
     for (BlockResult const& b : a.blocks) {
         Json block = Json::object();
         for (ScaleResult const& s : b.scales)

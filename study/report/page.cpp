@@ -396,6 +396,10 @@ std::string report_page(Script const& script, std::span<RecordedSession const> s
                          exclusions_html(a) + shown({"observers", "factors", "agreement"}));
     html += gi::html_section("Timing", timing_html(a, facts) + shown({"timing", "reactions", "calibrations"}) +
                                            sounds_html(script, sessions) + gaze_html(sessions));
+    std::string looks;
+    for (ResultTable const& t : facts.gaze)
+        if (!t.is_long) looks += html_of(t);
+    if (!looks.empty()) html += gi::html_section("What people looked at", looks);
     std::string orders;
     for (TransitionResult const& t : a.transitions) orders += transitions_table(t);
     html += gi::html_section("Order", gi::html_note("How trials followed each other, summed over participants: "

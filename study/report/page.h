@@ -2,6 +2,7 @@
 // A self-contained HTML page that shows an analysis: inline figures, no scripts, no other files; printable.
 
 #include "study/analysis/analysis.h"
+#include "study/tables/result_table.h"
 
 #include <span>
 
@@ -28,6 +29,7 @@ struct ReportFacts {
     std::string program; ///< "lightwell 0.1.0 (git 1a2b3c4)"
     std::optional<SimulatedTruth> truth;
     std::vector<double> frame_interval_ms{}; ///< between neighbouring frames of a stimulus; empty = not recorded
+    std::vector<ResultTable> gaze{};         ///< what people looked at; empty = not recorded
 };
 
 /// @param sessions the analysed sessions, for their provenance

@@ -70,6 +70,8 @@ CALLS = [
     Call("study analyze pairs --replicates 100 --json", "study_analyze"),
     Call("study analyze staircase --replicates 100 --draws 0 --json", "study_analyze"),
     Call("study analyze rating --replicates 100 --json --out results", "study_analyze", file="results/analysis.json"),
+    Call("study analyze --gaze gaze.csv --display-model screen.yaml --json --out looked", "study_analyze_gaze"),
+    Call("study analyze --gaze gaze.csv --display-model screen.yaml --gaze-method idt --out looked", "study_analyze_gaze", file="looked/gaze.json"),
     Call("study power pairs.yaml --block better --test none-wide --participants 6 --effects 0,1 --simulations 4 --json", "study_power"),
     Call("study photodiode diode.csv --session rating/sub-P001/ses-01/beh --clock session --json", "study_photodiode"),
     Call("study run pairs.yaml --participant 1 --dir run --size 64x48 --json", "study_run", codes=(1,), needs="display"),
@@ -102,6 +104,9 @@ CALLS = [
 def write_inputs():
     (WORK / "lit.yaml").write_text("models: [{file: avatar.glb}]\nenvironment: {file: sky.exr}\n"
                                    "cameras: [{name: lens, from: [0, 1, 3], at: [0, 1, 0], fov: 40}]\n")
+    (WORK / "screen.yaml").write_text("schema: display-model/1\ndate: 2026-12-01\n"
+                                      "screen: {size_px: [1920, 1080], size_cm: [53.1, 29.87], distance_cm: 57, method: typed}\n")
+    (WORK / "gaze.csv").write_text("t_s,x_px,y_px\n" + "".join(f"{i / 250},{600 + 300 * (i // 100)},540\n" for i in range(400)))
     (WORK / "room.yaml").write_text("""
 world: {position_m: [1, 0, 2], yaw_deg: 30}
 walls: [{name: wall, lower_left_m: [-1, 0, 0], lower_right_m: [1, 0, 0], upper_left_m: [-1, 1, 0], window: wall}]

@@ -2,11 +2,13 @@
 #include "gi/core/file.h"
 #include "gi/core/progress.h"
 #include "study/analysis/result_tables.h"
+#include "study/gaze/gaze_tables.h"
 #include "study/observers/simulate.h"
 #include "study/report/page.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/version.h"
 #include "viewer/cli/commands.h"
+#include "viewer/cli/study/gaze_command.h"
 #include "viewer/study/study_records.h"
 #include "viewer/study/study_table.h"
 
@@ -24,6 +26,7 @@ struct AnalyzeOptions {
     bool json = false;
     TableOptions table;
     double guess = -1, lapse = -1; ///< below 0: as the task
+    GazeOptions gaze;
 };
 
 /// The records of DIR, or those made from --table.
@@ -77,6 +80,12 @@ std::vector<study::TextFile> csv_files(study::Analysis const& analysis)
 
 int run_analyze(AnalyzeOptions& o)
 {
+    if (o.gaze.any()) {
+        if (!o.table.files.empty())
+            throw gi::InputError("--gaze with --table", "tables of trials have no samples of gaze",
+                                 "give the folder of records, or files behind --gaze");
+        return run_gaze(o.gaze, {o.dir, o.script, o.out, o.settings.exclude, o.json});
+    }
     study::Dataset const records = load(o);
     study::Analysis const analysis = analyze_with_progress(records, o.settings);
     if (!o.out.empty()) write_files(o.out, csv_files(analysis));
@@ -104,6 +113,8 @@ int run_report(AnalyzeOptions& o)
     if (!o.dir.empty()) {
         facts.truth = truth_beside(o.dir);
         facts.frame_interval_ms = frame_intervals_ms(o.dir);
+        auto gaze = study::gaze_of_records(o.dir, records, {}, o.settings.exclude);
+        if (!gaze.recordings.empty()) facts.gaze = study::gaze_tables(study::analyse_gaze(std::move(gaze), {}));
     }
     gi::write_text(o.out, study::report_page(records.script, records.sessions, analysis, facts));
     fmt::print("{}\n", o.out);
@@ -173,6 +184,7 @@ void add_study_analyze(CLI::App& study, int& exit_code)
     CLI::App* const analyze = study.add_subcommand(
         "analyze", "Analyse the records: exclusions, scales, thresholds, tests, timing, with uncertainties.");
     add_options(*analyze, *o);
+    add_gaze_options(*analyze, o->gaze);
     analyze->add_flag("--json", o->json, "print JSON");
     analyze->add_option("-o,--out", o->out, "folder for each table as CSV and the whole analysis as JSON");
     analyze->callback([o, &exit_code] { exit_code = run_analyze(*o); });
