@@ -2,6 +2,7 @@
 // never anything else. What is sound has views, and comes back as it was.
 
 #include "gi/core/error.h"
+#include "viewer/displays/calibration.h"
 #include "viewer/displays/display_file.h"
 #include "viewer/displays/import.h"
 #include "viewer/displays/mesh_file.h"
@@ -15,7 +16,7 @@ namespace {
 /// Any text as a mesh of another program: one that can be drawn, or an InputError.
 void read_meshes(std::string const& text)
 {
-    for (char const* name : {"fuzz.data", "fuzz.obj"}) try {
+    for (char const* name : {"fuzz.data", "fuzz.obj", "fuzz.csv"}) try {
             if (viewer::find_fault(viewer::parse_mesh_file(text, name, 1.5))) std::abort();
         } catch (gi::InputError const&) {
         }
@@ -38,6 +39,11 @@ viewer::Display parse(char kind, std::string const& text, gi::Report& report)
         return viewer::parse_ndisplay_cfg(text, "fuzz", report);
     case 'v':
         return viewer::parse_vrui(text, "fuzz", "", report);
+    case 'i': {
+        viewer::ImportLog const log(report);
+        auto const none = viewer::CalibrationFiles::of_folder("/nonexistent");
+        return viewer::display_of(viewer::read_mpcdi(text, "fuzz", none, log), "fuzz", log);
+    }
     case 'b': { // a configuration and its patch, with a form feed between them
         std::size_t const half = std::min(text.find('\f'), text.size());
         return viewer::parse_vrui(
@@ -57,6 +63,13 @@ extern "C" int LLVMFuzzerTestOneInput(unsigned char const* data, std::size_t siz
     std::string const text(reinterpret_cast<char const*>(data) + 1, size - 1);
     if (data[0] == 'm') {
         read_meshes(text);
+        return 0;
+    }
+    if (data[0] == 'f') {
+        try {
+            viewer::parse_points({data + 1, size - 1}, 0.001, "fuzz");
+        } catch (gi::InputError const&) {
+        }
         return 0;
     }
     viewer::Display display;

@@ -20,7 +20,7 @@ protected:
     Display imported(std::string const& xml)
     {
         gi::write_text(folder / "mpcdi.xml", xml);
-        return import_display(folder / "mpcdi.xml", {"", "", "out_files/"}, log);
+        return import_display(folder / "mpcdi.xml", {}, log);
     }
     std::string refused(std::string const& xml)
     {
@@ -42,7 +42,7 @@ protected:
 
     fs::path const folder = fs::path(testing::TempDir()) / "lightwell_mpcdi";
     gi::Report report;
-    ImportLog const log{report};
+    ImportLog const log{report, "out_files/"};
 };
 
 glm::vec3 same_place(glm::dvec2 p) { return {p.x, p.y, 0}; }
@@ -163,7 +163,7 @@ TEST_F(Mpcdi, ArchivesBecomeDisplayFilesThatReadBack)
                                                                 mpcdi_light("betaMap", "a.png", 2.2)))},
                {"maps/w.pfm", text_of(pfm_bytes(map))},
                {"a.png", gi::read_text(folder / "a.png")}});
-    Display const d = import_display(folder / "room.mpcdi", {"", "", "out_files/"}, log);
+    Display const d = import_display(folder / "room.mpcdi", {}, log);
     ASSERT_EQ(log.files().size(), 3u);
     fs::create_directories(folder / "out_files");
     for (KeptFile const& file : log.files()) gi::write_text(folder / file.name, text_of(file.bytes));
@@ -227,7 +227,7 @@ TEST_F(Mpcdi, DamagedArchivesAreRefused)
                                       mpcdi_fileset("a", mpcdi_warp("w.pfm", "2d")));
     std::string const pfm = text_of(pfm_bytes(made_map(16, 16, same_place)));
     fs::path const file = folder / "a.mpcdi";
-    auto const message = [&] { return message_of([&] { import_display(file, {"", "", "f/"}, log); }); };
+    auto const message = [&] { return message_of([&] { import_display(file, {}, log); }); };
     write_zip(file, {{"mpcdi.xml", xml}});
     EXPECT_NE(message().find("a.mpcdi/mpcdi.xml:7: 'w.pfm' is missing (the archive has no such file)"),
               std::string::npos)

@@ -269,6 +269,8 @@ TEST(Import, WhatIsBrokenIsRefusedWithItsPlace)
     expect(vrui, "section Vrui\nsection a\nscreenNames (S)\nwindowNames (W)\nendsection\nendsection",
            "f:2:1: environment 'a' names screens, windows or viewers that this file does not have");
     EXPECT_NE(message_of([] { format_of("a.txt"); }).find("no known kind"), std::string::npos);
+    EXPECT_NE(message_of([] { format_of("a.ol"); }).find("EasyBlend (its format is not public"),
+              std::string::npos);
     EXPECT_NE(message_of([&] {
                   import_display(std::string(kFolder) + "cave.pvx", {"x", {}}, report);
               }).find("only configurations of Vrui"),

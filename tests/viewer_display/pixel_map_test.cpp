@@ -3,6 +3,7 @@
 #include "tests/viewer_display/display_samples.h"
 #include "tests/viewer_display/map_samples.h"
 #include "viewer/displays/blend.h"
+#include "viewer/displays/mesh_file.h"
 #include "viewer/displays/views.h"
 
 #include <bit>
@@ -148,6 +149,26 @@ walls:
     EXPECT_NE(refused("points.pfm", "gone.pfm").find("gone.pfm"), std::string::npos);
     EXPECT_NE(refused("unit_m: 0.001", "unit_m: 0").find("a unit of 0 m"), std::string::npos);
     fs::remove_all(folder);
+}
+
+/// domeprojection's meshes: from the upper left, in any order.
+TEST(MeshFile, DomeprojectionCsv)
+{
+    std::string const good =
+        "x;y;u;v;column;row\n0;0;0.1;0.2;0;0\n1;0;0.9;0.2;1;0\n1;1;0.9;1;1;1\n0;1;0.1;1.001;0;1\n";
+    WallMesh const mesh = parse_mesh_file(good, "m.csv", 2);
+    EXPECT_EQ(mesh.columns, 2);
+    EXPECT_EQ(mesh.node(0, 1).place, glm::dvec2(0, 1)); // upper left
+    EXPECT_EQ(mesh.node(0, 1).picture, glm::dvec2(0.1, 0.8));
+    EXPECT_EQ(mesh.node(0, 0).picture, glm::dvec2(0.1, 0));
+    for (auto const& [text, wanted] :
+         {std::pair{"x;y", "m.csv:1: no mesh"},
+          {"0;0;0;0;1;0", "m.csv:1: 1 nodes; 2 columns and 1 rows have 2"},
+          {"0;0;0;0;0;a", "m.csv:1: number 6 of the line"},
+          {"0;0;0;0;0;900", "m.csv:1: number 6 is no column or row"},
+          {"0;0;0;0;0;0\n0;0;0;0;0;0\n1;1;1;1;1;1\n0;0;0;0;1;0", "m.csv:2: a second node"}})
+        EXPECT_EQ(message_of([&, t = text] { parse_mesh_file(t, "m.csv", 1); }).find(wanted), 0u)
+            << message_of([&, t = text] { parse_mesh_file(t, "m.csv", 1); });
 }
 
 } // namespace

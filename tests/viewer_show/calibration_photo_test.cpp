@@ -184,8 +184,8 @@ TEST_P(CalibrationPhoto, SeamsBrightnessAndBlack)
     fs::create_directories(folder / "out_files");
     gi::write_text(folder / "mpcdi.xml", calibrated(screen, has_points, folder));
     gi::Report unused;
-    ImportLog const log(unused);
-    Display imported = import_display(folder / "mpcdi.xml", {"", "", "out_files/"}, log);
+    ImportLog const log(unused, "out_files/");
+    Display imported = import_display(folder / "mpcdi.xml", {}, log);
     for (KeptFile const& file : log.files()) gi::write_text(folder / file.name, text_of(file.bytes));
     gi::write_text(folder / "out.yaml", to_yaml(imported));
     Display display = load_display(folder / "out.yaml", unused);

@@ -7,20 +7,6 @@
 
 namespace viewer {
 
-std::string keep_map(std::string const& prefix, std::string const& projector, std::string const& what,
-                     std::vector<unsigned char> bytes, ImportLog const& log)
-{
-    std::string plain;
-    for (char const c : projector.substr(0, 64))
-        plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' ? c : '_';
-    std::size_t const dot = what.rfind('.');
-    std::string name = prefix + plain + "_" + what;
-    for (int n = 2; log.has_file(name); ++n)
-        name = prefix + plain + fmt::format("_{}_{}{}", what.substr(0, dot), n, what.substr(dot));
-    log.keep_file(name, std::move(bytes));
-    return name;
-}
-
 Display display_of(std::vector<CalibratedProjector> projectors, std::string const& file, ImportLog const& log)
 {
     Display d;

@@ -24,17 +24,14 @@ struct CalibratedProjector {
 /// Alpha maps are factors on light, beta maps the light of black.
 /// Sources: the MPCDI library's reader (rows of PFM from below, enumerations), Christie's notes (frames and
 /// angles), Unreal's nDisplay (axes of points; NaN and (0, 0, 0) are none).
-/// Throws InputError with the line on what is no such calibration. Maps are kept in the log under names that
-/// start with `prefix`.
+/// Throws InputError with the line on what is no such calibration. Maps are kept in the log.
+/// @param only  id of the one region that is read; empty = all
 std::vector<CalibratedProjector> read_mpcdi(std::string const& xml, std::string const& name,
-                                            CalibrationFiles const& files, std::string const& prefix,
-                                            ImportLog const& log);
+                                            CalibrationFiles const& files, ImportLog const& log,
+                                            std::string const& only = {});
 /// The archive's mpcdi.xml, or the text of a file of that name. @param name  becomes the XML's name in messages
 std::string mpcdi_text(CalibrationFiles const& archive, std::filesystem::path const& file, std::string& name);
 
-/// A map or picture from a calibration, kept in the log: its name is what the wall's map is called.
-std::string keep_map(std::string const& prefix, std::string const& projector, std::string const& what,
-                     std::vector<unsigned char> bytes, ImportLog const& log);
 /// Each projector in a window of its own, side by side, one user per eye place. Throws as finished().
 Display display_of(std::vector<CalibratedProjector> projectors, std::string const& file, ImportLog const& log);
 

@@ -77,7 +77,7 @@ void read_warp(Wall& wall, Yaml const& y, std::filesystem::path const& folder, d
         return;
     }
     wall.warp_file = file;
-    if (kind == ".data" || kind == ".obj") {
+    if (is_mesh_file(path)) {
         wall.warp = load_mesh_file(path, aspect);
         return;
     }

@@ -65,6 +65,10 @@ DisplayFormat format_of(std::filesystem::path const& file)
                                         {".eqc", DisplayFormat::equalizer},
                                         {".cfg", DisplayFormat::vrui}})
         if (end == known) return format == DisplayFormat::sgct && end == ".xml" ? format_of_xml(file) : format;
+    if (end == ".ol" || end == ".pol")
+        throw gi::InputError("'" + file.string() + "' is a calibration of Scalable Display's EasyBlend",
+                             "its format is not public: only their library reads it",
+                             "export the calibration as MPCDI, which is read");
     throw gi::InputError(
         "'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
         ".yaml (ours), .json and .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui, nDisplay), "
@@ -98,7 +102,7 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
     if (format == DisplayFormat::mpcdi && file.extension() != ".xml") {
         CalibrationFiles const archive = CalibrationFiles::of_archive(file);
         std::string const xml = mpcdi_text(archive, file, name);
-        return display_of(read_mpcdi(xml, name, archive, o.prefix, log), name, log);
+        return display_of(read_mpcdi(xml, name, archive, log), name, log);
     }
     std::string const text = text_of(file);
     bool const is_vrui = format == DisplayFormat::vrui && !is_ndisplay_cfg(text);
@@ -115,8 +119,7 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
     case DisplayFormat::ndisplay:
         return parse_ndisplay(text, name, log);
     case DisplayFormat::mpcdi:
-        return display_of(read_mpcdi(text, name, CalibrationFiles::of_folder(file.parent_path()), o.prefix, log),
-                          name, log);
+        return display_of(read_mpcdi(text, name, CalibrationFiles::of_folder(file.parent_path()), log), name, log);
     case DisplayFormat::vrui:
         if (!is_vrui) return parse_ndisplay_cfg(text, name, log);
         if (o.base_file.empty()) return parse_vrui(text, name, o.section, log);
@@ -136,14 +139,20 @@ void ImportLog::lose(std::string const& what, std::uint64_t count, std::string c
     if (parts_->size() < kMost) parts_->push_back({what, where});
 }
 
-void ImportLog::keep_file(std::string const& name, std::vector<unsigned char> bytes) const
+std::string ImportLog::keep_file(std::string const& name, std::vector<unsigned char> bytes) const
 {
-    files_->push_back({name, std::move(bytes)});
-}
-
-bool ImportLog::has_file(std::string const& name) const
-{
-    return std::ranges::any_of(*files_, [&](KeptFile const& f) { return f.name == name; });
+    auto const is_taken = [&](std::string const& wanted) {
+        return std::ranges::any_of(*files_, [&](KeptFile const& f) { return f.name == wanted; });
+    };
+    std::string plain;
+    for (char const c : name)
+        plain += std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == '.' ? c : '_';
+    std::size_t const dot = plain.rfind('.');
+    std::string free = prefix_ + plain;
+    for (int n = 2; is_taken(free); ++n)
+        free = prefix_ + fmt::format("{}_{}{}", plain.substr(0, dot), n, plain.substr(dot));
+    files_->push_back({free, std::move(bytes)});
+    return free;
 }
 
 Display import_display(std::filesystem::path const& file, ImportOptions const& options, ImportLog const& log)

@@ -46,16 +46,18 @@ struct KeptFile {
 /// Counts in a report, and lists, what an importer could not take over.
 class ImportLog {
 public:
-    ImportLog(gi::Report& report) : report_(&report) {}
+    /// @param prefix  of the names of kept files: a folder beside the display file, and a slash
+    ImportLog(gi::Report& report, std::string prefix = {}) : report_(&report), prefix_(std::move(prefix)) {}
     void lose(std::string const& what, std::uint64_t count, std::string const& where) const;
     std::vector<SkippedPart> const& parts() const { return *parts_; } ///< the first 10,000
     gi::Report& report() const { return *report_; }
-    void keep_file(std::string const& name, std::vector<unsigned char> bytes) const;
-    bool has_file(std::string const& name) const;
+    /// Keeps a file under the prefix and `name`, or another name if it is taken; returns what the display file calls it.
+    std::string keep_file(std::string const& name, std::vector<unsigned char> bytes) const;
     std::vector<KeptFile> const& files() const { return *files_; } ///< to be written beside the display file
 
 private:
     gi::Report* report_;
+    std::string prefix_;
     std::shared_ptr<std::vector<SkippedPart>> parts_ = std::make_shared<std::vector<SkippedPart>>();
     std::shared_ptr<std::vector<KeptFile>> files_ = std::make_shared<std::vector<KeptFile>>();
 };
@@ -81,7 +83,6 @@ Display parse_vrui(std::string const& text, std::string const& name, std::string
 struct ImportOptions {
     std::string section{};             ///< Vrui
     std::filesystem::path base_file{}; ///< Vrui: configuration that the file changes; empty = none
-    std::string prefix{};              ///< of the names of files that the display file names: a folder and a slash
 };
 /// Imports any format, including ours, by file extension. The log has what was skipped, and the files to write.
 Display import_display(std::filesystem::path const& file, ImportOptions const& options, ImportLog const& log);

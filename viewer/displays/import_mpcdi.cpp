@@ -33,7 +33,6 @@ XMLElement const* mpcdi_child(XMLElement const& e, char const* name)
 struct MpcdiReader {
     std::string file;
     CalibrationFiles const& files;
-    std::string prefix;
     ImportLog const& log;
     std::string profile;
     XMLElement const* root = nullptr;
@@ -213,7 +212,7 @@ std::optional<LightMap> light_of(XMLElement const* e, std::string const& what, d
     map.light.map = std::make_shared<PixelMap const>(parse_light(bytes, map.gamma, r.files.full_name(path)));
     std::string const ending = gi::lower_extension(path);
     map.light.file =
-        keep_map(r.prefix, region, what + (ending.empty() ? ".png" : ending), std::move(bytes), r.log);
+        r.log.keep_file(region.substr(0, 64) + "_" + what + (ending.empty() ? ".png" : ending), std::move(bytes));
     return map;
 }
 
@@ -222,7 +221,7 @@ MapFile positions_of(XMLElement const& e, std::string const& what, std::string c
     std::string path;
     auto bytes = r.bytes_of(e, path);
     auto map = std::make_shared<PixelMap const>(parse_picture_positions(bytes, r.files.full_name(path)));
-    return {keep_map(r.prefix, region, what, std::move(bytes), r.log), std::move(map)};
+    return {r.log.keep_file(region.substr(0, 64) + "_" + what, std::move(bytes)), std::move(map)};
 }
 
 /// The eye for which points were measured.
@@ -251,7 +250,7 @@ void read_points(CalibratedProjector& p, XMLElement const& warp, double metres, 
     std::string path;
     auto bytes = r.bytes_of(warp, path);
     s.points.map = std::make_shared<PixelMap const>(parse_points(bytes, metres, r.files.full_name(path)));
-    s.points.file = keep_map(r.prefix, p.wall.name, "points.pfm", std::move(bytes), r.log);
+    s.points.file = r.log.keep_file(p.wall.name.substr(0, 64) + "_points.pfm", std::move(bytes));
     p.wall.surface = std::move(s);
     p.eye_m = eye_of_points(warp, r);
 }
@@ -358,8 +357,8 @@ CalibratedProjector read_region(XMLElement const& region, XMLElement const& buff
 } // namespace
 
 std::vector<CalibratedProjector> read_mpcdi(std::string const& xml, std::string const& name,
-                                            CalibrationFiles const& files, std::string const& prefix,
-                                            ImportLog const& log)
+                                            CalibrationFiles const& files, ImportLog const& log,
+                                            std::string const& only)
 {
     tinyxml2::XMLDocument document;
     if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS)
@@ -369,7 +368,7 @@ std::vector<CalibratedProjector> read_mpcdi(std::string const& xml, std::string 
     if (!root || !is_called(root->Name(), "MPCDI"))
         throw gi::InputError({name, 1, 1}, "there is no element <MPCDI>", "calibrations of MPCDI have one",
                              "is this a file of MPCDI?");
-    MpcdiReader r{name, files, prefix, log, {}, root};
+    MpcdiReader r{name, files, log, {}, root};
     r.profile = valid_profile(r.attribute(*root, "profile").value_or(""), *root, r);
     std::string const version = r.attribute(*root, "version").value_or("");
     if (version != "1.0" && version != "2.0")
@@ -386,6 +385,7 @@ std::vector<CalibratedProjector> read_mpcdi(std::string const& xml, std::string 
         r.lose_others(*b, {"id", "xResolution", "yResolution", "region"});
         for (XMLElement const* e = b->FirstChildElement(); e; e = e->NextSiblingElement()) {
             if (!is_called(e->Name(), "region")) continue;
+            if (!only.empty() && r.attribute(*e, "id").value_or("") != only) continue;
             if (projectors.size() == kMostWalls)
                 throw gi::InputError(r.at(*e), fmt::format("more than {} regions", kMostWalls),
                                      "no room has so many", "is it one display?");

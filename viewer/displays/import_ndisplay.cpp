@@ -1,11 +1,13 @@
 // nDisplay of Unreal Engine: .ndisplay (JSON, versions 4.26 to 5, lengths in cm) and the older
 // .cfg (a line per part, "[screen] id=front loc="X=1.5,Y=0,Z=1.5" ...", lengths in m). Screens are
 // rectangles about their centre, seen along +X of their frame; places are relative to a parent. Axes:
-// x forward, y to the right, z up (left-handed). Viewports with the projection policy "simple" become walls;
-// the calibrated ones need files of other companies.
+// x forward, y to the right, z up (left-handed). Viewports with the projection policies "simple" and "mpcdi" become
+// walls; the other calibrated ones need libraries of other companies.
 
+#include "gi/core/file.h"
 #include "gi/core/text.h"
 #include "gi/core/yaml.h"
+#include "viewer/displays/calibration.h"
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
 #include "viewer/displays/json_text.h"
@@ -42,6 +44,7 @@ struct UnrealCamera {
 
 struct UnrealViewport {
     std::string name, camera, policy, screen;
+    std::map<std::string, std::string> parameters; ///< of the policy
     PixelRectangle region;
     double buffer_ratio = 1;
     gi::TextLocation at;
@@ -64,6 +67,12 @@ struct UnrealConfig {
     int swap_group = 1, swap_barrier = 1;
     double metres = 0.01; ///< per unit of length
 };
+
+std::string lower(std::string text)
+{
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
 
 std::string text_of(gi::TextLocation const& at) { return fmt::format("{}:{}:{}", at.file, at.line, at.column); }
 
@@ -132,19 +141,143 @@ int user_of(Display& d, UnrealConfig const& config, std::string const& name, Unr
     return int(d.users.size()) - 1;
 }
 
-void add_viewport(Display& d, UnrealConfig const& config, UnrealViewport const& v, int window, int rank,
-                  ImportLog const& log)
+/// Keys of a policy's parameters that are read.
+std::set<std::string> parameters_of(std::string const& policy)
 {
-    std::string policy = v.policy;
-    std::transform(policy.begin(), policy.end(), policy.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    if (policy != "simple") {
-        log.lose("nDisplay projection policy " + policy.substr(0, 64) + ": not supported, viewport skipped", 1,
+    if (lower(policy) != "mpcdi") return {"screen"};
+    return {"file", "buffer", "region",   "origin", "mpcdi",       "MPCDIType", "mpcditype",
+            "pfm",  "scale",  "ue_space", "alpha",  "alpha_gamma", "beta"};
+}
+
+std::string parameter(UnrealViewport const& v, char const* key)
+{
+    auto const found = v.parameters.find(key);
+    return found == v.parameters.end() ? "" : found->second;
+}
+
+double parameter_number(UnrealViewport const& v, char const* key, double otherwise)
+{
+    std::string const text = parameter(v, key);
+    if (text.empty()) return otherwise;
+    auto const value = gi::parse_finite(text, 1e6);
+    if (!value || !(*value > 0))
+        throw gi::InputError(v.at, std::string(key) + " of the projection policy is '" + text.substr(0, 64) + "'",
+                             "it is a positive number", "1");
+    return *value;
+}
+
+/// The name of a file beside the configuration: as written, or without its folders, which may be those of Windows.
+std::string beside(std::filesystem::path const& folder, std::string name)
+{
+    std::ranges::replace(name, '\\', '/');
+    std::error_code failure;
+    if (std::filesystem::is_regular_file(folder / name, failure)) return name;
+    return name.substr(name.rfind('/') + 1);
+}
+
+/// An MPCDI file's region.
+Wall region_of(UnrealViewport const& v, std::filesystem::path const& folder, ImportLog const& log)
+{
+    std::string const region = parameter(v, "region");
+    std::filesystem::path const file = folder / beside(folder, parameter(v, "file"));
+    bool const is_archive = gi::lower_extension(file) == ".mpcdi";
+    CalibrationFiles const files =
+        is_archive ? CalibrationFiles::of_archive(file) : CalibrationFiles::of_folder(file.parent_path());
+    std::string name = file.string();
+    std::string const xml = is_archive ? mpcdi_text(files, file, name) : gi::read_text(file, std::size_t(1) << 20);
+    for (CalibratedProjector& p : read_mpcdi(xml, name, files, log, region))
+        if (p.wall.name == region) return std::move(p.wall);
+    throw gi::InputError(v.at, name + " has no region '" + region.substr(0, 64) + "'", "the viewport names it",
+                         "name one of its regions");
+}
+
+/// A PFM with points in the scale of the configuration, and its pictures.
+Wall explicit_pfm(UnrealViewport const& v, std::filesystem::path const& folder, ImportLog const& log)
+{
+    constexpr double kUnreal_m = 0.01; // a unit of Unreal
+    CalibrationFiles const files = CalibrationFiles::of_folder(folder);
+    constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+    auto const bytes_of = [&](std::string const& name) { return files.read(name, kMostBytes, v.at); };
+    Surface s;
+    s.type = SurfaceType::points;
+    std::string const pfm = beside(folder, parameter(v, "pfm"));
+    auto bytes = bytes_of(pfm);
+    PixelMap map = parse_points(bytes, kUnreal_m * parameter_number(v, "scale", 1), files.full_name(pfm));
+    std::string const axes = lower(parameter(v, "ue_space"));
+    if (axes == "true" || axes == "1") {
+        for (glm::vec3& p : map.values) p = {p.y, p.z, -p.x};
+        bytes = pfm_bytes(map);
+    } else
+        s.unit_m = kUnreal_m * parameter_number(v, "scale", 1);
+    s.points = {log.keep_file(v.name + "_points.pfm", std::move(bytes)), std::make_shared<PixelMap const>(map)};
+    Wall wall;
+    wall.surface = std::move(s);
+    auto const light = [&](char const* key, double gamma) -> std::optional<LightMap> {
+        if (parameter(v, key).empty()) return {};
+        std::string const name = beside(folder, parameter(v, key));
+        auto picture = bytes_of(name);
+        auto light_map = std::make_shared<PixelMap const>(parse_light(picture, gamma, files.full_name(name)));
+        return LightMap{
+            {log.keep_file(v.name + "_" + key + gi::lower_extension(name), std::move(picture)), light_map}, gamma};
+    };
+    double const gamma = parameter_number(v, "alpha_gamma", 1);
+    wall.blend_picture = light("alpha", gamma);
+    wall.black_level_picture = light("beta", gamma);
+    return wall;
+}
+
+/// The wall of a calibrated viewport, placed by its origin. None, and counted, if its files cannot be read.
+std::optional<Wall> calibrated_wall(UnrealViewport const& v, UnrealConfig const& config,
+                                    std::filesystem::path const& folder, ImportLog const& log)
+{
+    Wall wall;
+    try {
+        if (parameter(v, "file").empty() && parameter(v, "pfm").empty())
+            throw gi::InputError(v.at, "a policy mpcdi without a file", "it would name the calibration",
+                                 "set file and region, or pfm");
+        wall = parameter(v, "file").empty() ? explicit_pfm(v, folder, log) : region_of(v, folder, log);
+    } catch (gi::InputError const& e) {
+        log.lose("nDisplay viewports whose calibration cannot be read, skipped: " + std::string(e.what()), 1,
                  text_of(v.at));
+        return {};
+    }
+    UnrealFrame frame;
+    if (std::string const origin = parameter(v, "origin"); !origin.empty()) {
+        auto const node = config.nodes.find(origin);
+        if (node == config.nodes.end())
+            throw gi::InputError(v.at, "there is no transform '" + origin.substr(0, 64) + "'",
+                                 "the calibration is placed by it", "name one of the scene's transforms");
+        frame = frame_of(config, node->second);
+    }
+    // The calibration's x is to the right, its y up, its z backward.
+    glm::dmat3 const turn(ours(frame.rotation[1]), ours(frame.rotation[2]), -ours(frame.rotation[0]));
+    gi::dvec3 const at = config.metres * ours(frame.origin);
+    if (wall.surface) {
+        RoomPose const own = pose_of(wall.surface->place);
+        wall.surface->place = placement_of({at + turn * own.position, glm::quat_cast(turn) * own.rotation});
+    } else {
+        for (gi::dvec3* corner : {&wall.corners.lower_left, &wall.corners.lower_right, &wall.corners.upper_left})
+            *corner = at + turn * *corner;
+    }
+    return wall;
+}
+
+void add_viewport(Display& d, UnrealConfig const& config, UnrealViewport const& v, int window, int rank,
+                  std::filesystem::path const& folder, ImportLog const& log)
+{
+    std::string const policy = lower(v.policy);
+    std::optional<Wall> const calibrated =
+        policy == "mpcdi" ? calibrated_wall(v, config, folder, log) : std::nullopt;
+    if (policy == "mpcdi" && !calibrated) return;
+    if (policy != "simple" && !calibrated) {
+        bool const is_closed = policy == "easyblend" || policy == "domeprojection";
+        log.lose("nDisplay projection policy " + policy.substr(0, 64) + ": not supported, viewport skipped" +
+                     (is_closed ? ": only its maker's library reads its files, export them as MPCDI" : ""),
+                 1, text_of(v.at));
         return;
     }
     auto const screen = config.screens.find(v.screen);
-    if (screen == config.screens.end())
+    if (screen == config.screens.end() && !calibrated)
         throw gi::InputError(v.at, "there is no screen '" + v.screen.substr(0, 64) + "'",
                              "the viewport is drawn for it", "name one of the screens");
     UnrealCamera const* camera = nullptr;
@@ -165,10 +298,10 @@ void add_viewport(Display& d, UnrealConfig const& config, UnrealViewport const& 
             throw gi::InputError(v.at, "viewports '" + other.name + "' and '" + v.name + "' overlap",
                                  "one would be drawn over the other", "give each a region of its own");
     }
-    Wall wall;
+    Wall wall = calibrated.value_or(Wall{});
     wall.name = free_name(d.walls, v.name);
-    wall.corners = corners_of(config, screen->second);
-    if (auto const fault = find_fault(wall.corners))
+    if (!calibrated) wall.corners = corners_of(config, screen->second);
+    if (auto const fault = wall.surface ? std::nullopt : find_fault(wall.corners); fault && !calibrated)
         throw gi::InputError(screen->second.place.at, "screen '" + v.screen.substr(0, 64) + "': " + fault->problem,
                              fault->why, fault->suggestion);
     wall.window = window;
@@ -178,7 +311,7 @@ void add_viewport(Display& d, UnrealConfig const& config, UnrealViewport const& 
     wall.user = user_of(d, config, name, *camera, log);
     wall.viewport = {LengthUnit::px, double(v.region.x), double(v.region.y), double(v.region.width),
                      double(v.region.height)};
-    if (v.buffer_ratio != 1) {
+    if (v.buffer_ratio != 1 && !wall.surface) {
         wall.render_width_px = std::max(1, int(std::lround(v.buffer_ratio * v.region.width)));
         wall.render_height_px = std::max(1, int(std::lround(v.buffer_ratio * v.region.height)));
     }
@@ -190,6 +323,7 @@ Display display_of(UnrealConfig const& config, std::string const& file, ImportLo
     Display d;
     int rank = 0;
     bool has_both_eyes = false;
+    auto const folder = std::filesystem::path(file).parent_path();
     for (UnrealNode const& node : config.cluster) {
         DisplayWindow window;
         window.name = free_name(d.windows, node.name);
@@ -214,7 +348,7 @@ Display display_of(UnrealConfig const& config, std::string const& file, ImportLo
         std::size_t const walls = d.walls.size();
         d.windows.push_back(window);
         for (UnrealViewport const& v : node.viewports)
-            add_viewport(d, config, v, int(d.windows.size()) - 1, rank, log);
+            add_viewport(d, config, v, int(d.windows.size()) - 1, rank, folder, log);
         if (d.walls.size() == walls)
             d.windows.pop_back();
         else
@@ -305,7 +439,9 @@ UnrealViewport read_unreal_viewport(std::string const& name, Yaml const& y, Impo
     v.at = policy.at("type").place();
     if (policy.has("parameters")) {
         v.screen = name_in(policy.at("parameters"), "screen");
-        lose_keys(policy.at("parameters"), {"screen"}, "projectionPolicy.parameters.", log);
+        for (auto const& [key, value] : policy.at("parameters").entries())
+            if (value.is_text()) v.parameters[lower(key.text())] = value.text();
+        lose_keys(policy.at("parameters"), parameters_of(v.policy), "projectionPolicy.parameters.", log);
     }
     return v;
 }
@@ -480,10 +616,12 @@ void lose_arguments(UnrealLine const& line, ImportLog const& log)
         {"NVIDIA", {"sync_group", "sync_barrier"}}};
     auto const read = kRead.find(line.kind);
     if (read == kRead.end()) return;
-    bool const is_simple =
-        line.kind != "projection" || line.text("type") == "simple"; // others are skipped as a whole
+    bool const is_projection = line.kind == "projection";
+    std::string const policy = lower(line.text("type"));
+    bool const is_read =
+        !is_projection || policy == "simple" || policy == "mpcdi"; // others are skipped as a whole
     for (auto const& [key, value] : line.values)
-        if (is_simple && !read->second.contains(key))
+        if (is_read && !read->second.contains(key) && !(is_projection && parameters_of(policy).contains(key)))
             log.lose("nDisplay [" + line.kind + "] " + key.substr(0, 64) + ": not imported", 1, text_of(line.at));
     lose_address(line.text("addr"), text_of(line.at), log);
 }
@@ -495,6 +633,7 @@ UnrealViewport viewport_of(UnrealLine const& v, UnrealLine const& projection)
     out.camera = v.text("camera");
     out.policy = projection.text("type");
     out.screen = projection.text("screen");
+    for (auto const& [key, value] : projection.values) out.parameters[lower(key)] = value;
     out.region = {v.pixels("x"), v.pixels("y"), v.pixels("width"), v.pixels("height")};
     if (v.values.contains("X")) out.region.x = v.pixels("X");
     if (v.values.contains("Y")) out.region.y = v.pixels("Y");
@@ -520,9 +659,7 @@ Display parse_ndisplay(std::string const& text, std::string const& name, ImportL
     lose_keys(cluster, {"primaryNode", "masterNode", "sync", "network", "failover", "nodes"}, "cluster.", log);
     if (cluster.has("sync") && cluster.at("sync").has("renderSyncPolicy")) {
         Yaml const sync = cluster.at("sync").at("renderSyncPolicy");
-        std::string type = name_in(sync, "type");
-        std::transform(type.begin(), type.end(), type.begin(),
-                       [](unsigned char c) { return char(std::tolower(c)); });
+        std::string const type = lower(name_in(sync, "type"));
         config.has_swap_lock = type == "nvidia";
         if (!config.has_swap_lock && type != "none" && type != "ethernet") // ours swap together over the network
             log.lose("nDisplay renderSyncPolicy " + type.substr(0, 64) + ": not imported", 1,

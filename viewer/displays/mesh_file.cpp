@@ -51,6 +51,8 @@ struct MeshReader {
             "the mesh cannot be read",
             std::filesystem::path(name).extension() == ".obj"
                 ? "correct this line: v X Y, vt U V, or f with three vertices or more"
+            : std::filesystem::path(name).extension() == ".csv"
+                ? "correct this line: X;Y;U;V;COLUMN;ROW"
                 : "correct this line: type, then columns and rows, then X Y U V WEIGHT of a node in each line"};
     }
     double number(MeshLine const& line, std::size_t word) const
@@ -61,10 +63,13 @@ struct MeshReader {
             throw error(line, fmt::format("number {} of the line is missing or no number", word + 1));
         return *value;
     }
-    WarpNode node(double x, double y, double u, double v, double weight) const
+    static double tidy(double t)
     {
         constexpr double kSlack = 2e-3; // exported with few digits
-        auto const tidy = [](double t) { return t < 0 && t > -kSlack ? 0 : t > 1 && t < 1 + kSlack ? 1 : t; };
+        return t < 0 && t > -kSlack ? 0 : t > 1 && t < 1 + kSlack ? 1 : t;
+    }
+    WarpNode node(double x, double y, double u, double v, double weight) const
+    {
         return {{(x / aspect + 1) / 2, (y + 1) / 2}, {tidy(u), tidy(v)}, weight};
     }
 };
@@ -150,16 +155,61 @@ WallMesh obj_mesh(std::vector<MeshLine> const& lines, MeshReader const& r)
                          "a warp mesh has columns and rows of nodes", "export a grid, row by row");
 }
 
+WallMesh csv_mesh(std::vector<MeshLine> lines, MeshReader const& r)
+{
+    if (!lines.empty() && !gi::parse_finite(lines[0].words[0])) lines.erase(lines.begin()); // titles
+    if (lines.empty())
+        throw gi::InputError({r.name, 1, 0}, "no mesh", "it has no nodes", "X;Y;U;V;COLUMN;ROW in each line");
+    auto const index = [&](MeshLine const& l, std::size_t word) {
+        double const value = r.number(l, word);
+        if (!(value >= 0 && value < kMostWarpNodes) || value != std::floor(value))
+            throw r.error(l,
+                          fmt::format("number {} is no column or row from 0 to {}", word + 1, kMostWarpNodes - 1));
+        return int(value);
+    };
+    WallMesh mesh;
+    for (MeshLine const& l : lines) {
+        mesh.columns = std::max(mesh.columns, index(l, 4) + 1);
+        mesh.rows = std::max(mesh.rows, index(l, 5) + 1);
+    }
+    std::size_t const count = std::size_t(mesh.columns) * std::size_t(mesh.rows);
+    if (lines.size() != count)
+        throw r.error(lines.back(), fmt::format("{} nodes; {} columns and {} rows have {}", lines.size(),
+                                                mesh.columns, mesh.rows, count));
+    mesh.nodes.resize(count);
+    std::vector<char> is_there(count);
+    for (MeshLine const& l : lines) {
+        std::size_t const at =
+            std::size_t(mesh.rows - 1 - index(l, 5)) * std::size_t(mesh.columns) + std::size_t(index(l, 4));
+        if (is_there[at]) throw r.error(l, "a second node of this column and row");
+        is_there[at] = 1;
+        mesh.nodes[at] = {{r.number(l, 0), 1 - r.number(l, 1)},
+                          {r.tidy(r.number(l, 2)), r.tidy(1 - r.number(l, 3))}};
+    }
+    return mesh;
+}
+
 } // namespace
+
+bool is_mesh_file(std::filesystem::path const& file)
+{
+    std::string const kind = file.extension().string();
+    return kind == ".data" || kind == ".obj" || kind == ".csv";
+}
 
 WallMesh parse_mesh_file(std::string const& text, std::string const& name, double aspect)
 {
     std::string const kind = std::filesystem::path(name).extension().string();
-    if (kind != ".data" && kind != ".obj")
+    if (!is_mesh_file(name))
         throw gi::InputError({name, 0, 0}, "a mesh of kind '" + kind.substr(0, 16) + "'",
-                             "meshes of Bourke (.data) and grids in .obj are read", "convert it");
+                             "meshes of Bourke (.data) and domeprojection (.csv) and grids in .obj are read",
+                             "convert it");
     MeshReader const reader{name, aspect};
-    WallMesh mesh = kind == ".data" ? bourke_mesh(lines_of(text), reader) : obj_mesh(lines_of(text), reader);
+    std::string plain = text;
+    if (kind == ".csv") std::ranges::replace(plain, ';', ' ');
+    WallMesh mesh = kind == ".data"  ? bourke_mesh(lines_of(plain), reader)
+                    : kind == ".csv" ? csv_mesh(lines_of(plain), reader)
+                                     : obj_mesh(lines_of(plain), reader);
     if (auto const fault = find_fault(mesh))
         throw gi::InputError({name, 0, 0}, *fault, "the picture would be torn",
                              "write nodes row by row from below, each to the right of the one before");
@@ -168,8 +218,7 @@ WallMesh parse_mesh_file(std::string const& text, std::string const& name, doubl
 
 WallMesh load_mesh_file(std::filesystem::path const& file, double aspect)
 {
-    std::string const kind = file.extension().string();
-    if (kind != ".data" && kind != ".obj") return parse_mesh_file("", file.string(), aspect);
+    if (!is_mesh_file(file)) return parse_mesh_file("", file.string(), aspect);
     auto const bytes = gi::read_bytes(file, std::size_t(1) << 24);
     return parse_mesh_file({bytes.begin(), bytes.end()}, file.string(), aspect);
 }

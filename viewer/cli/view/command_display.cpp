@@ -141,9 +141,9 @@ int run_import(DisplayOptions const& o)
 {
     check_outputs({o.out}, {o.file});
     gi::Report report;
-    ImportLog const log(report);
     std::filesystem::path const out(o.out), folder = out.parent_path();
-    Display const d = import_display(o.file, {o.section, o.base, out.stem().string() + "_files/"}, log);
+    ImportLog const log(report, out.stem().string() + "_files/");
+    Display const d = import_display(o.file, {o.section, o.base}, log);
     std::vector<SkippedPart> const& skipped = log.parts();
     write_kept(log.files(), folder);
     gi::write_text(o.out, skipped_comment(o.file, skipped) + to_yaml(d));
