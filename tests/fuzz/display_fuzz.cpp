@@ -44,6 +44,11 @@ viewer::Display parse(char kind, std::string const& text, gi::Report& report)
         auto const none = viewer::CalibrationFiles::of_folder("/nonexistent");
         return viewer::display_of(viewer::read_mpcdi(text, "fuzz", none, log), "fuzz", log);
     }
+    case 'w': {
+        viewer::ImportLog const log(report);
+        std::vector<unsigned char> const bytes(text.begin(), text.end());
+        return viewer::display_of(viewer::read_vioso(bytes, "fuzz", 0.001, log), "fuzz", log);
+    }
     case 'b': { // a configuration and its patch, with a form feed between them
         std::size_t const half = std::min(text.find('\f'), text.size());
         return viewer::parse_vrui(

@@ -2,6 +2,7 @@
 
 #include "tests/viewer_display/calibration_samples.h"
 #include "tests/viewer_display/display_samples.h"
+#include "tests/viewer_display/vioso_sample.h"
 #include "tests/viewer_display/zip_sample.h"
 #include "viewer/displays/import.h"
 
@@ -84,6 +85,24 @@ TEST_F(NDisplayCalibration, ExplicitPfm)
     EXPECT_EQ(log.files().back().name, "out_files/v_points_2.pfm");
     // The kept file reads back as the same points.
     EXPECT_EQ(parse_points(log.files().back().bytes, 1, "p").values, unreal.walls[0].surface->points.map->values);
+}
+
+TEST_F(NDisplayCalibration, MappingsOfVioso)
+{
+    std::vector<float> const here{100, 50, -200, 1, 200, 50, -200, 1, 100, -50, -200, 1, 200, -50, -200, 1};
+    gi::write_text(folder / "v.vwf",
+                   vioso_set(vioso_mapping("other", 0x40, here) + vioso_mapping("mine", 0x40, here) +
+                             vioso_bitmap(-2, {255, 51, 255, 255})));
+    Display const d = imported(
+        R"({"type": "vioso", "parameters": {"file": "v.vwf", "index": "1", "UnitsInMeter": "100", "origin": "stage"}})");
+    auto const point = surface_point(*d.walls[0].surface, 2, {0.25, 0.75}); // (1, 0.5, -2) m of the stage
+    EXPECT_NEAR(glm::distance(point->at, gi::dvec3(2, 1, 0)), 0, 1e-6);
+    EXPECT_TRUE(d.walls[0].blend_picture);
+    EXPECT_EQ(log.files().size(), 2u);
+    EXPECT_NE(message_of([&] {
+                  imported(R"({"type": "vioso", "parameters": {"file": "v.vwf", "index": "2"}})");
+              }).find("v.vwf has no mapping 2 (it has 2, counted from 0)"),
+              std::string::npos);
 }
 
 TEST_F(NDisplayCalibration, WhatCannotBeReadIsNamed)

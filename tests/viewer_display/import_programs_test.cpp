@@ -522,7 +522,7 @@ TEST(ImportNDisplay, Json)
     EXPECT_NEAR(d.users[0].interpupillary_m, 0.064, 1e-12);
     EXPECT_EQ(d.walls[0].render_width_px, 300);
     EXPECT_EQ(d.windows[0], (DisplayWindow{"n", 1600, 400, 1, 2, -1, true, false, 1, 1}));
-    for (char const* policy : {"mesh", "domeprojection", "easyblend", "vioso", "camera", "manual"}) {
+    for (char const* policy : {"mesh", "domeprojection", "easyblend", "camera", "manual"}) {
         gi::Report other;
         ImportLog const skips(other);
         EXPECT_EQ(parse_ndisplay(ndisplay_json(policy), "n.ndisplay", skips).walls.size(), 1u);

@@ -32,6 +32,16 @@ std::vector<CalibratedProjector> read_mpcdi(std::string const& xml, std::string 
 /// The archive's mpcdi.xml, or the text of a file of that name. @param name  becomes the XML's name in messages
 std::string mpcdi_text(CalibrationFiles const& archive, std::filesystem::path const& file, std::string& name);
 
+/// VIOSO's .vwf (the headers and the reader of VIOSO's API): mappings of 32-bit floats, rows from above, with points
+/// (x right, y up, z backward) or with positions in a picture from its upper left corner, and a bitmap of blend
+/// factors. Throws InputError on compressed, encrypted and damaged files. Maps are kept in the log.
+/// @param unit_m  of points, m: the file does not state it; VIOSO measures in millimetres
+/// @param only  number of the one mapping whose maps are read; none = all
+std::vector<CalibratedProjector> read_vioso(std::span<unsigned char const> bytes, std::string const& name,
+                                            double unit_m, ImportLog const& log,
+                                            std::optional<std::size_t> only = {});
+inline constexpr double kViosoUnit_m = 0.001;
+
 /// Each projector in a window of its own, side by side, one user per eye place. Throws as finished().
 Display display_of(std::vector<CalibratedProjector> projectors, std::string const& file, ImportLog const& log);
 

@@ -28,6 +28,8 @@ char const* name_of(DisplayFormat format)
         return "nDisplay";
     case DisplayFormat::mpcdi:
         return "MPCDI";
+    case DisplayFormat::vioso:
+        return "VIOSO";
     case DisplayFormat::yaml:
         break;
     }
@@ -62,6 +64,7 @@ DisplayFormat format_of(std::filesystem::path const& file)
                                         {".ndisplay", DisplayFormat::ndisplay},
                                         {".pvx", DisplayFormat::pvx},
                                         {".mpcdi", DisplayFormat::mpcdi},
+                                        {".vwf", DisplayFormat::vioso},
                                         {".eqc", DisplayFormat::equalizer},
                                         {".cfg", DisplayFormat::vrui}})
         if (end == known) return format == DisplayFormat::sgct && end == ".xml" ? format_of_xml(file) : format;
@@ -72,7 +75,7 @@ DisplayFormat format_of(std::filesystem::path const& file)
     throw gi::InputError(
         "'" + file.string() + "' is of no known kind of display", "its file extension is unknown",
         ".yaml (ours), .json and .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui, nDisplay), "
-        ".ndisplay, .mpcdi and mpcdi.xml");
+        ".ndisplay, .mpcdi and mpcdi.xml, .vwf (VIOSO)");
 }
 
 namespace {
@@ -104,6 +107,8 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
         std::string const xml = mpcdi_text(archive, file, name);
         return display_of(read_mpcdi(xml, name, archive, log), name, log);
     }
+    if (format == DisplayFormat::vioso)
+        return display_of(read_vioso(read_map_bytes(file), name, kViosoUnit_m, log), name, log);
     std::string const text = text_of(file);
     bool const is_vrui = format == DisplayFormat::vrui && !is_ndisplay_cfg(text);
     if (!is_vrui && !(o.section.empty() && o.base_file.empty()))
@@ -124,6 +129,7 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
         if (!is_vrui) return parse_ndisplay_cfg(text, name, log);
         if (o.base_file.empty()) return parse_vrui(text, name, o.section, log);
         return parse_vrui({{text_of(o.base_file), o.base_file.string()}, {text, name}}, o.section, log);
+    case DisplayFormat::vioso:
     case DisplayFormat::yaml:
         break;
     }

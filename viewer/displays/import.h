@@ -26,10 +26,10 @@
 
 namespace viewer {
 
-enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay, mpcdi };
+enum class DisplayFormat { yaml, sgct, pvx, equalizer, vrui, ndisplay, mpcdi, vioso };
 char const* name_of(DisplayFormat format);
-/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay, .mpcdi; of .xml by its first
-/// element. Throws InputError for others.
+/// Format by file extension: .yaml or .yml, .json, .xml, .pvx, .eqc, .cfg, .ndisplay, .mpcdi, .vwf; of .xml by its
+/// first element. Throws InputError for others.
 DisplayFormat format_of(std::filesystem::path const& file);
 
 /// Something in a file that has no equivalent here, or that had to be assumed.

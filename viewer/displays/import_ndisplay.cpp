@@ -1,13 +1,14 @@
 // nDisplay of Unreal Engine: .ndisplay (JSON, versions 4.26 to 5, lengths in cm) and the older
 // .cfg (a line per part, "[screen] id=front loc="X=1.5,Y=0,Z=1.5" ...", lengths in m). Screens are
 // rectangles about their centre, seen along +X of their frame; places are relative to a parent. Axes:
-// x forward, y to the right, z up (left-handed). Viewports with the projection policies "simple" and "mpcdi" become
-// walls; the other calibrated ones need libraries of other companies.
+// x forward, y to the right, z up (left-handed). Viewports with the projection policies "simple", "mpcdi" and "vioso"
+// become walls; the other calibrated ones need libraries of other companies.
 
 #include "gi/core/file.h"
 #include "gi/core/text.h"
 #include "gi/core/yaml.h"
 #include "viewer/displays/calibration.h"
+#include "viewer/displays/check.h"
 #include "viewer/displays/import.h"
 #include "viewer/displays/import_common.h"
 #include "viewer/displays/json_text.h"
@@ -144,6 +145,7 @@ int user_of(Display& d, UnrealConfig const& config, std::string const& name, Unr
 /// Keys of a policy's parameters that are read.
 std::set<std::string> parameters_of(std::string const& policy)
 {
+    if (lower(policy) == "vioso") return {"file", "index", "origin", "UnitsInMeter", "unitsinmeter"};
     if (lower(policy) != "mpcdi") return {"screen"};
     return {"file", "buffer", "region",   "origin", "mpcdi",       "MPCDIType", "mpcditype",
             "pfm",  "scale",  "ue_space", "alpha",  "alpha_gamma", "beta"};
@@ -191,6 +193,21 @@ Wall region_of(UnrealViewport const& v, std::filesystem::path const& folder, Imp
                          "name one of its regions");
 }
 
+/// A mapping of VIOSO's file.
+Wall mapping_of(UnrealViewport const& v, std::filesystem::path const& folder, ImportLog const& log)
+{
+    std::filesystem::path const file = folder / beside(folder, parameter(v, "file"));
+    double const unit_m = 1 / parameter_number(v, "unitsinmeter", 1 / kViosoUnit_m);
+    auto const bytes = read_map_bytes(file);
+    std::string const index = parameter(v, "index");
+    auto const number = index.empty() ? 0 : gi::parse_number<std::size_t>(index).value_or(kMostWalls);
+    std::vector<CalibratedProjector> all = read_vioso(bytes, file.string(), unit_m, log, number);
+    if (number >= all.size())
+        throw gi::InputError(v.at, fmt::format("{} has no mapping {}", file.string(), index.substr(0, 32)),
+                             fmt::format("it has {}, counted from 0", all.size()), "set another index");
+    return std::move(all[number].wall);
+}
+
 /// A PFM with points in the scale of the configuration, and its pictures.
 Wall explicit_pfm(UnrealViewport const& v, std::filesystem::path const& folder, ImportLog const& log)
 {
@@ -233,9 +250,11 @@ std::optional<Wall> calibrated_wall(UnrealViewport const& v, UnrealConfig const&
     Wall wall;
     try {
         if (parameter(v, "file").empty() && parameter(v, "pfm").empty())
-            throw gi::InputError(v.at, "a policy mpcdi without a file", "it would name the calibration",
-                                 "set file and region, or pfm");
-        wall = parameter(v, "file").empty() ? explicit_pfm(v, folder, log) : region_of(v, folder, log);
+            throw gi::InputError(v.at, "a policy " + lower(v.policy) + " without a file",
+                                 "it would name the calibration", "set file, or pfm of the policy mpcdi");
+        wall = lower(v.policy) == "vioso"     ? mapping_of(v, folder, log)
+               : parameter(v, "file").empty() ? explicit_pfm(v, folder, log)
+                                              : region_of(v, folder, log);
     } catch (gi::InputError const& e) {
         log.lose("nDisplay viewports whose calibration cannot be read, skipped: " + std::string(e.what()), 1,
                  text_of(v.at));
@@ -266,9 +285,9 @@ void add_viewport(Display& d, UnrealConfig const& config, UnrealViewport const& 
                   std::filesystem::path const& folder, ImportLog const& log)
 {
     std::string const policy = lower(v.policy);
-    std::optional<Wall> const calibrated =
-        policy == "mpcdi" ? calibrated_wall(v, config, folder, log) : std::nullopt;
-    if (policy == "mpcdi" && !calibrated) return;
+    bool const is_calibrated = policy == "mpcdi" || policy == "vioso";
+    std::optional<Wall> const calibrated = is_calibrated ? calibrated_wall(v, config, folder, log) : std::nullopt;
+    if (is_calibrated && !calibrated) return;
     if (policy != "simple" && !calibrated) {
         bool const is_closed = policy == "easyblend" || policy == "domeprojection";
         log.lose("nDisplay projection policy " + policy.substr(0, 64) + ": not supported, viewport skipped" +
@@ -618,8 +637,8 @@ void lose_arguments(UnrealLine const& line, ImportLog const& log)
     if (read == kRead.end()) return;
     bool const is_projection = line.kind == "projection";
     std::string const policy = lower(line.text("type"));
-    bool const is_read =
-        !is_projection || policy == "simple" || policy == "mpcdi"; // others are skipped as a whole
+    bool const is_read = !is_projection || policy == "simple" || policy == "mpcdi" ||
+                         policy == "vioso"; // others are skipped as a whole
     for (auto const& [key, value] : line.values)
         if (is_read && !read->second.contains(key) && !(is_projection && parameters_of(policy).contains(key)))
             log.lose("nDisplay [" + line.kind + "] " + key.substr(0, 64) + ": not imported", 1, text_of(line.at));

@@ -252,7 +252,7 @@ void add_display(CLI::App& app, int& exit_code)
     import
         ->add_option("FILE", o->file,
                      ".json or .xml (SGCT), .pvx (ParaView), .eqc (Equalizer), .cfg (Vrui or\n"
-                     "nDisplay's text), .ndisplay, .mpcdi or mpcdi.xml")
+                     "nDisplay's text), .ndisplay, .mpcdi, mpcdi.xml or .vwf")
         ->required();
     import->add_option("-o,--out", o->out, "display file to write; maps and pictures go to a folder beside it")
         ->required();
