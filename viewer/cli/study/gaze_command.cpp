@@ -132,8 +132,9 @@ nlohmann::ordered_json to_json(study::GazeAnalysis const& a, std::vector<study::
 
 } // namespace
 
-int run_gaze(GazeOptions const& o, GazeCall const& call)
+int run_gaze(GazeOptions o, GazeCall const& call)
 {
+    std::erase(o.files, ""); // CLI11 gives one for --gaze without values
     std::vector<std::string> inputs = o.files;
     for (std::string const& file : {o.display_model, o.picture, call.script}) inputs.push_back(file);
     check_outputs({}, inputs);

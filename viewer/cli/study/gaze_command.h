@@ -25,6 +25,6 @@ struct GazeCall {
     std::vector<std::string> exclude;
     bool json = false;
 };
-int run_gaze(GazeOptions const& o, GazeCall const& call);
+int run_gaze(GazeOptions o, GazeCall const& call);
 
 } // namespace viewer
