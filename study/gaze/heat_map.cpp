@@ -42,16 +42,23 @@ HeatMap heat_map(std::vector<HeatSource> const& sources, ScreenGeometry const& s
     return map;
 }
 
+std::array<unsigned char, 3> heat_color(double share)
+{
+    double const v = std::sqrt(std::clamp(share, 0.0, 1.0));
+    std::array<unsigned char, 3> rgb{};
+    for (int c = 0; c < 3; ++c)
+        rgb[std::size_t(c)] = static_cast<unsigned char>(std::lround(255 * std::clamp(3 * v - c, 0.0, 1.0)));
+    return rgb;
+}
+
 std::vector<unsigned char> heat_colors(HeatMap const& map, double most)
 {
     std::vector<unsigned char> bytes;
     bytes.reserve(4 * map.density.size());
     for (double const density : map.density) {
-        double const share = std::clamp(density / most, 0.0, 1.0), v = std::sqrt(share);
-        // Black, red, yellow, white, each a third of the way.
-        for (int c = 0; c < 3; ++c)
-            bytes.push_back(static_cast<unsigned char>(std::lround(255 * std::clamp(3 * v - c, 0.0, 1.0))));
-        bytes.push_back(static_cast<unsigned char>(std::lround(220 * std::min(1.0, 4 * share))));
+        auto const rgb = heat_color(density / most);
+        bytes.insert(bytes.end(), rgb.begin(), rgb.end());
+        bytes.push_back(static_cast<unsigned char>(std::lround(220 * std::clamp(4 * density / most, 0.0, 1.0))));
     }
     return bytes;
 }

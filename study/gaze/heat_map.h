@@ -3,6 +3,7 @@
 
 #include "study/display/display_model.h"
 
+#include <array>
 #include <vector>
 
 namespace study {
@@ -24,7 +25,9 @@ struct HeatMap {
 /// map, in cells; its height is in the ratio of the screen's pixels
 HeatMap heat_map(std::vector<HeatSource> const& sources, ScreenGeometry const& screen, double sd_deg, int width);
 
-/// Bytes of RGBA, row by row: black at 0 to white at `most`, by the square root of the density. @param most  above 0
+/// Black, red, yellow, white, each a third of the way; by the square root of a share, 0 to 1.
+std::array<unsigned char, 3> heat_color(double share);
+/// Bytes of RGBA, row by row: heat_color of the density's share of `most`. @param most  above 0
 /// Alpha grows from 0 at nothing to 220 at a quarter of `most`, so that a picture beneath is seen where nobody looked.
 std::vector<unsigned char> heat_colors(HeatMap const& map, double most);
 

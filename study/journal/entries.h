@@ -52,6 +52,8 @@ struct StimulusShown {
     /// Of its first frame: brighter than the display or darker than its black.
     std::optional<int> clipped_pixels{};
     std::optional<double> width_deg{}, height_deg{};
+    // In windows only: the rectangle of its picture, from the window's top left corner, px.
+    std::optional<int> left_px{}, top_px{}, width_px{}, height_px{};
     // With `frames: shown` only:
     std::string frames_kind{};         ///< "shown"; empty: exact
     std::optional<int> frames_drawn{}; ///< of frames_shown: its surfaces were drawn for a newer pose

@@ -77,6 +77,10 @@ struct Fields<StimulusShown> {
         f(LaterField{"clipped_pixels"}, e.clipped_pixels);
         f(LaterField{"width_deg"}, e.width_deg);
         f(LaterField{"height_deg"}, e.height_deg);
+        f(LaterField{"left_px"}, e.left_px);
+        f(LaterField{"top_px"}, e.top_px);
+        f(LaterField{"width_px"}, e.width_px);
+        f(LaterField{"height_px"}, e.height_px);
         f(LaterField{"frames_kind"}, e.frames_kind);
         f(LaterField{"frames_drawn"}, e.frames_drawn);
         f(LaterField{"light_age_ms"}, e.light_age_ms);

@@ -347,6 +347,12 @@ void TrialPresenter::Trial::appear(std::string const& letters, bool takes_answer
                 s.frames_drawn = drawn[at];
                 s.light_age_ms = 1e3 * (p_.clock_.of_steady(onset_s_) - first.frame->command.pose_s);
             }
+            if (!p_.screen_->has_own_views()) {
+                s.left_px = c_shown[at].corner_px.x;
+                s.top_px = c_shown[at].corner_px.y;
+                s.width_px = c_shown[at].size_px.x;
+                s.height_px = c_shown[at].size_px.y;
+            }
             if (p_.has_degrees() && at < c_shown.size()) {
                 study::ScreenGeometry const& screen = *p_.model()->screen;
                 s.width_deg = 2 * study::deg_of_place(screen, 0.5 * c_shown[at].size_px.x, false);

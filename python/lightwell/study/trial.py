@@ -122,6 +122,7 @@ class StimulusShown:
         mean_cd_m2, peak_cd_m2: luminance of the first picture on a calibrated display.
         clipped_pixels: of the first picture, pixels beyond the display's peak or below its black.
         width_deg, height_deg: its size as seen.
+        left_px, top_px, width_px, height_px: rectangle of its picture, from the window's top left corner.
         frames_kind: "shown" if frames were drawn for newer poses than those of their light; "" = finished pictures alone.
         frames_drawn: of frames_shown, those that were drawn so.
         light_age_ms: at the onset, since the pose for which the light of the first frame was rendered.
@@ -143,6 +144,10 @@ class StimulusShown:
     clipped_pixels: int | None = None
     width_deg: float | None = None
     height_deg: float | None = None
+    left_px: int | None = None
+    top_px: int | None = None
+    width_px: int | None = None
+    height_px: int | None = None
     frames_kind: str = ""
     frames_drawn: int | None = None
     light_age_ms: float | None = None

@@ -10,6 +10,8 @@
 #include "study/gaze/gaze_tables.h"
 #include "viewer/base/outputs.h"
 #include "viewer/base/version.h"
+#include "viewer/experiment/looked/looked_at.h"
+#include "viewer/experiment/stimuli/study_scenes.h"
 #include "viewer/study/study_records.h"
 
 #include <algorithm>
@@ -39,7 +41,12 @@ std::optional<study::ScreenGeometry> given_screen(std::string const& file)
     return model.screen;
 }
 
-study::GazeAnalysis analysed(GazeOptions const& o, GazeCall const& call)
+struct Analysed {
+    study::GazeAnalysis gaze;
+    std::optional<LookedAt> looked; ///< with --objects
+};
+
+Analysed analysed(GazeOptions const& o, GazeCall const& call)
 {
     if (call.dir.empty() == o.files.empty())
         throw gi::InputError(o.files.empty() ? "--gaze without records" : "DIR and files of --gaze",
@@ -50,8 +57,12 @@ study::GazeAnalysis analysed(GazeOptions const& o, GazeCall const& call)
         auto const eyes = o.eyes == "left"    ? study::GazeEyes::left
                           : o.eyes == "right" ? study::GazeEyes::right
                                               : study::GazeEyes::mean;
-        return study::analyse_gaze(study::gaze_of_files({o.files.begin(), o.files.end()}, screen, eyes),
-                                   settings_of(o));
+        if (o.follows_rays)
+            throw gi::InputError("--objects with files", "only records of sessions name scenes and cameras",
+                                 "give DIR before --gaze");
+        return {study::analyse_gaze(study::gaze_of_files({o.files.begin(), o.files.end()}, screen, eyes),
+                                    settings_of(o)),
+                {}};
     }
     if (o.eyes != "mean")
         throw gi::InputError("--eyes " + o.eyes + " with records", "sessions record one place for both eyes",
@@ -62,7 +73,13 @@ study::GazeAnalysis analysed(GazeOptions const& o, GazeCall const& call)
         throw gi::InputError(recordings.remarks.empty() ? "no session" : recordings.remarks.back(),
                              "there is no gaze to analyse",
                              "record it by study run --gaze with --display-model, or give other records");
-    return study::analyse_gaze(std::move(recordings), settings_of(o));
+    Analysed a{study::analyse_gaze(std::move(recordings), settings_of(o)), {}};
+    if (!o.follows_rays) return a;
+    LookedAtSettings settings;
+    settings.accuracy_deg = o.accuracy_deg;
+    a.looked = looked_at(records, a.gaze, study_scenes(), settings);
+    a.gaze.cautions.insert(a.gaze.cautions.end(), a.looked->cautions.begin(), a.looked->cautions.end());
+    return a;
 }
 
 /// Cells enlarged to a size, linearly.
@@ -106,7 +123,9 @@ void write_heat(std::filesystem::path const& file, study::HeatMap const& map, gi
     gi::write_png(file, picture->width, picture->height, rgb);
 }
 
-nlohmann::ordered_json to_json(study::GazeAnalysis const& a, std::vector<study::ResultTable> const& tables)
+/// @param accuracy_deg  none: objects were not looked for
+nlohmann::ordered_json to_json(study::GazeAnalysis const& a, std::optional<double> accuracy_deg,
+                               std::vector<study::ResultTable> const& tables)
 {
     using Json = nlohmann::ordered_json;
     study::GazeEventSettings const& e = a.settings.events;
@@ -124,7 +143,8 @@ nlohmann::ordered_json to_json(study::GazeAnalysis const& a, std::vector<study::
              {"merge_ms", e.merge_ms},
              {"merge_deg", e.merge_deg},
              {"bridge_ms", e.bridge_ms},
-             {"least_valid", a.settings.least_valid}}},
+             {"least_valid", a.settings.least_valid},
+             {"accuracy_deg", accuracy_deg ? Json(*accuracy_deg) : Json()}}},
            {"cautions", a.cautions}};
     study::add_tables(j, tables);
     return j;
@@ -140,12 +160,14 @@ int run_gaze(GazeOptions o, GazeCall const& call)
     check_outputs({}, inputs);
     std::optional<gi::Picture> picture;
     if (!o.picture.empty()) picture = gi::read_picture(o.picture);
-    study::GazeAnalysis const analysis = analysed(o, call);
+    auto const [analysis, looked] = analysed(o, call);
     auto tables = study::gaze_tables(analysis);
     auto const maps = study::condition_heat(analysis, o.heat_deg, kHeatCells);
+    if (looked) tables.insert(tables.end(), looked->tables.begin(), looked->tables.end());
     if (!call.out.empty()) tables.push_back(study::heat_table(maps));
-    std::string const json =
-        to_json(analysis, tables).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+    std::string const json = to_json(analysis, looked ? std::optional(o.accuracy_deg) : std::nullopt, tables)
+                                 .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
+                             "\n";
     if (!call.out.empty()) {
         std::vector<study::TextFile> files{{"gaze.json", json}};
         for (study::ResultTable const& t : tables)
@@ -153,6 +175,9 @@ int run_gaze(GazeOptions o, GazeCall const& call)
         write_files(call.out, files);
         for (study::ConditionHeat const& m : maps)
             write_heat(std::filesystem::path(call.out) / (m.file + ".png"), m.map, picture ? &*picture : nullptr);
+        if (looked)
+            for (SurfaceHeat const& h : looked->surfaces)
+                write_heat_ply(std::filesystem::path(call.out) / (h.file + ".ply"), h);
     }
     if (!o.derivatives.empty()) write_files(o.derivatives, study::gaze_derivatives(analysis, version_number()));
     if (call.json) {
@@ -211,6 +236,18 @@ void add_gaze_options(CLI::App& command, GazeOptions& o)
     number("--heat-deg", o.heat_deg, "heat maps of --out: standard deviation of the Gaussian, degrees", 0.05, 20);
     command.add_option("--picture", o.picture, "picture beneath the heat maps; it fills the screen")
         ->needs(o.given);
+    CLI::Option* const objects =
+        command
+            .add_flag("--objects", o.follows_rays,
+                      "also how long gaze was on each object and material of the scenes, by way of mirrors too; "
+                      "with --out seconds per square metre of their surfaces (PLY)")
+            ->needs(o.given);
+    command
+        .add_option("--accuracy", o.accuracy_deg,
+                    "--objects: accuracy of the eye tracker, degrees (standard deviation of each axis)")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str()
+        ->needs(objects);
     command
         .add_option("--derivatives", o.derivatives,
                     "folder for fixations, saccades and losses as a derivative data set of BIDS")

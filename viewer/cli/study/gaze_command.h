@@ -13,6 +13,8 @@ struct GazeOptions {
     study::GazeAnalysisSettings settings;
     double min_fixation_ms = -1; ///< below 0: that of the method
     double heat_deg = 1;
+    bool follows_rays = false; ///< to objects and materials
+    double accuracy_deg = 0.5;
     CLI::Option* given = nullptr; ///< --gaze
 
     bool any() const { return given->count() > 0; }
