@@ -175,6 +175,19 @@ TEST_F(LookedAtWalls, NearAnEdgeTheShareIsThatOfTheAccuracy)
     }
 }
 
+TEST_F(LookedAtWalls, AMovingCameraIsThatOfEachMoment)
+{
+    // Once round a circle to the right, out and back: gaze in the middle of the picture is on green while
+    // the camera is to the right of the edge, the first half of the time, and on red otherwise.
+    records_.script.blocks[0].camera = "path:orbit";
+    record({{-0.02, 5, 2000}});
+    LookedAt const l = looked({0, 1, 0});
+    fmt::print("red {:.4f} s, green {:.4f} s of {:.4f} s\n", on(l, "object", "red")[0], on(l, "object", "green")[0],
+               fixated(0));
+    EXPECT_NEAR(on(l, "object", "green")[0] / fixated(0), 0.5, 0.02);
+    EXPECT_NEAR(on(l, "object", "red")[0] / fixated(0), 0.5, 0.02);
+}
+
 TEST_F(LookedAtWalls, BesideThePictureIsCounted)
 {
     record({{-6, 2, 1000}, {6, 4, 1000}}, {480, 0, 480, 1080}); // the left half of the middle

@@ -53,6 +53,9 @@ TEST_F(Measured, StimuliHaveTheirLuminanceSizeAndGaze)
         ASSERT_TRUE(s.mean_cd_m2 && s.width_deg && s.clipped_pixels);
         EXPECT_NEAR(*s.width_deg, 1.5, 0.02);
         EXPECT_NEAR(*s.mean_cd_m2, 10, 0.1);
+        ASSERT_TRUE(s.left_px && s.top_px && s.width_px && s.height_px);
+        EXPECT_NEAR(*s.left_px + 0.5 * *s.width_px, 120, 1) << "in the middle";
+        EXPECT_NEAR(*s.width_px, 1.5 * 33.3, 2);
     }
     fmt::print("{} trials, {} valid, {} ended because gaze left\n", trials.size(), valid, left);
     EXPECT_EQ(valid, 6);
@@ -68,6 +71,26 @@ TEST_F(Measured, StimuliHaveTheirLuminanceSizeAndGaze)
     run_well("study report data --out r.html", folder.path());
     EXPECT_NE(file_text(report).find("pixels_per_degree"), std::string::npos);
     EXPECT_NE(file_text(report).find("no fixation"), std::string::npos);
+    EXPECT_NE(file_text(report).find("What people looked at"), std::string::npos);
+
+    // Gaze is below the picture, within the accuracy of the eye tracker.
+    run_well("study analyze data --gaze --objects --accuracy 1 --out looked", folder.path());
+    auto const looked = nlohmann::json::parse(file_text((folder / "looked/gaze.json").string()));
+    EXPECT_TRUE(looked["tables"]["dwell_left_out"].empty()) << looked["tables"]["dwell_left_out"];
+    double on_objects = 0, beside = 0, all = 0;
+    for (auto const& row : looked["tables"]["dwell"]) {
+        if (row["kind"] != "material") all += row["seconds"].get<double>();
+        if (row["kind"] == "object") on_objects += row["seconds"].get<double>();
+        if (row["name"] == "beside the picture") beside += row["seconds"].get<double>();
+    }
+    double fixated = 0;
+    for (auto const& row : looked["tables"]["gaze_views"])
+        if (row["counted"].get<bool>() && row["usable"].get<bool>()) fixated += 1e-3 * row["dwell_ms"].get<double>();
+    fmt::print("fixations of {:.3f} s: {:.3f} s on objects, {:.3f} s beside the picture\n", fixated, on_objects,
+               beside);
+    EXPECT_GT(on_objects, 0.05 * fixated);
+    EXPECT_NEAR(all, fixated, 1e-3);
+    EXPECT_TRUE(std::filesystem::exists(folder / "looked/surfacescornell.ply"));
 }
 
 TEST_F(Measured, AModelOfAnotherScreenIsRefused)
