@@ -161,10 +161,17 @@ EyeFile read_physio(fs::path const& file, std::optional<ScreenGeometry> const& s
         gi::TextLine const line{gi::take_until(rest, '\n'), file_name, number};
         if (gi::trimmed(line.text).empty()) continue;
         std::vector<std::string_view> cells;
-        for (std::string_view left = line.text; cells.size() <= columns.count && !left.empty();)
-            cells.push_back(gi::trimmed(gi::take_until(left, '\t')));
+        for (std::size_t at = 0, end = 0; end != std::string_view::npos; at = end + 1) {
+            end = line.text.find('\t', at);
+            cells.push_back(gi::trimmed(line.text.substr(at, end - at)));
+        }
+        ++eye.counts.samples;
+        if (cells.size() != columns.count) {
+            ++eye.counts.unreadable;
+            continue;
+        }
         auto const cell = [&](int i) -> std::optional<double> {
-            if (i < 0 || i >= int(cells.size()) || is_missing(cells[std::size_t(i)])) return {};
+            if (i < 0 || is_missing(cells[std::size_t(i)])) return {};
             if (auto const v = gi::parse_finite(cells[std::size_t(i)])) return v;
             throw line.error(cells[std::size_t(i)], fmt::format("'{}' is no number", cells[std::size_t(i)]),
                              "it is a time, a place or a pupil", "write a number or n/a");
@@ -175,7 +182,6 @@ EyeFile read_physio(fs::path const& file, std::optional<ScreenGeometry> const& s
         s.x_px = x.value_or(0);
         s.y_px = y.value_or(0);
         if (pupil) s.pupil_mm = *pupil;
-        ++eye.counts.samples;
         if (columns.time < 0) {
             s.time_s = start_s + (eye.counts.samples - 1) / rate_hz;
         } else {

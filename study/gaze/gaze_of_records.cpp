@@ -9,23 +9,6 @@
 namespace study {
 namespace {
 
-std::string recorded_fact(SessionStarted const& start, std::string_view key)
-{
-    for (auto const& [name, value] : start.about)
-        if (name == key) return value;
-    return {};
-}
-
-/// "1920 x 1080"
-std::optional<std::pair<double, double>> recorded_pair(SessionStarted const& start, std::string_view key)
-{
-    std::string const text = recorded_fact(start, key);
-    auto const x = text.find(" x ");
-    if (x == std::string::npos) return {};
-    auto const a = gi::parse_finite(text.substr(0, x)), b = gi::parse_finite(text.substr(x + 3));
-    return a && b && *a > 0 && *b > 0 ? std::optional(std::pair(*a, *b)) : std::nullopt;
-}
-
 /// None: its size or distance is not recorded.
 std::optional<ScreenGeometry> recorded_screen(SessionStarted const& start)
 {
@@ -33,9 +16,10 @@ std::optional<ScreenGeometry> recorded_screen(SessionStarted const& start)
     s.method = "recorded";
     if (auto const per_tangent = gi::parse_finite(recorded_fact(start, "gaze_px_per_tangent"));
         per_tangent && *per_tangent > 0) {
-        auto const px = recorded_pair(start, "window_px").value_or(std::pair(2 * *per_tangent, 2 * *per_tangent));
-        s.width_px = int(px.first);
-        s.height_px = int(px.second);
+        auto const px = recorded_pair(start, "window_px");
+        if (!px) return {};
+        s.width_px = int(px->first);
+        s.height_px = int(px->second);
         s.width_cm = s.width_px; // one pixel counts as a centimetre: only angles matter
         s.height_cm = s.height_px;
         s.distance_cm = *per_tangent;
@@ -114,11 +98,11 @@ GazeRecordings gaze_of_records(std::filesystem::path const& dir, Dataset const& 
         }
         r.screen = *of_session;
         // Places are from the corner of the window, which is seen from in front of its centre.
-        auto const window = recorded_pair(start, "window_px")
-                                .value_or(std::pair<double, double>(r.screen.width_px, r.screen.height_px));
+        r.window_px = recorded_pair(start, "window_px")
+                          .value_or(std::pair<double, double>(r.screen.width_px, r.screen.height_px));
         for (GazeSample& s : raw.samples) {
-            s.x_px -= 0.5 * window.first;
-            s.y_px -= 0.5 * window.second;
+            s.x_px -= 0.5 * r.window_px.first;
+            s.y_px -= 0.5 * r.window_px.second;
         }
         r.counts.samples = int(raw.samples.size());
         r.counts.unreadable = raw.unreadable;

@@ -28,6 +28,7 @@ struct GazeRecording {
     std::string eyes; ///< left, right, mean of both, as recorded
     /// Its distance is known. Pixels of a headset are those of the plane at its distance.
     ScreenGeometry screen;
+    std::pair<double, double> window_px; ///< of sessions: of the window, around the centre of the screen
     std::vector<GazeSample> samples; ///< cleaned, from the centre of the screen
     GazeCounts counts;
     std::vector<GazeView> views; ///< in the order of their times

@@ -25,47 +25,29 @@ void add_table(std::vector<TextFile>& files, std::string const& stem, Table cons
     files.push_back({stem + ".json", sidecar_json(table, facts)});
 }
 
-/// What a session recorded of itself under this name; empty = nothing.
-std::string about_value(SessionStarted const& start, std::string_view key)
-{
-    for (auto const& [name, value] : start.about)
-        if (name == key) return value;
-    return {};
-}
-
-/// "1920 x 1080" as a list, each number times a factor.
-std::optional<Json> pair_of(std::string const& text, double factor, bool is_whole)
-{
-    auto const x = text.find(" x ");
-    if (x == std::string::npos) return {};
-    auto const a = gi::parse_finite(text.substr(0, x)), b = gi::parse_finite(text.substr(x + 3));
-    if (!a || !b) return {};
-    return is_whole ? Json{int(*a), int(*b)} : Json{*a * factor, *b * factor};
-}
-
 std::vector<SidecarFact> about_task(std::string const& name, SessionStarted const& start)
 {
     std::vector<SidecarFact> facts{{"TaskName", name},
                                    {"StimulusPresentation.SoftwareName", "Lightwell"},
                                    {"StimulusPresentation.SoftwareVersion", start.version}};
-    if (std::string const os = about_value(start, "os"); !os.empty())
+    if (std::string const os = recorded_fact(start, "os"); !os.empty())
         facts.push_back({"StimulusPresentation.OperatingSystem", os});
-    auto const distance_cm = gi::parse_finite(about_value(start, "viewing_distance_cm"));
-    auto const px = pair_of(about_value(start, "screen_px"), 1, true);
-    auto const size_m = pair_of(about_value(start, "screen_cm"), 0.01, false);
-    if (!distance_cm || !px || !size_m) return facts;
-    auto const hz = gi::parse_finite(about_value(start, "refresh_hz"));
+    auto const distance_cm = gi::parse_finite(recorded_fact(start, "viewing_distance_cm"));
+    auto const px = recorded_pair(start, "screen_px"), size_cm = recorded_pair(start, "screen_cm");
+    if (!distance_cm || !px || !size_cm) return facts;
+    auto const hz = gi::parse_finite(recorded_fact(start, "refresh_hz"));
     facts.push_back({"StimulusPresentation.ScreenDistance", Json(*distance_cm * 0.01).dump(), true});
     facts.push_back({"StimulusPresentation.ScreenOrigin", R"(["top", "left"])", true});
-    facts.push_back({"StimulusPresentation.ScreenResolution", px->dump(), true});
-    facts.push_back({"StimulusPresentation.ScreenSize", size_m->dump(), true});
+    facts.push_back({"StimulusPresentation.ScreenResolution", Json{int(px->first), int(px->second)}.dump(), true});
+    facts.push_back(
+        {"StimulusPresentation.ScreenSize", Json{size_cm->first * 0.01, size_cm->second * 0.01}.dump(), true});
     if (hz) facts.push_back({"StimulusPresentation.ScreenRefreshRate", Json(*hz).dump(), true});
     for (auto const& [key, field] : {std::pair{"DisplayModel", "display_model"},
                                      {"DisplayModelSha256", "display_model_sha256"},
                                      {"PixelsPerDegree", "pixels_per_degree"},
                                      {"ScreenWhiteLuminance", "white_cd_m2"},
                                      {"ScreenBlackLuminance", "black_cd_m2"}})
-        if (std::string const value = about_value(start, field); !value.empty()) facts.push_back({key, value});
+        if (std::string const value = recorded_fact(start, field); !value.empty()) facts.push_back({key, value});
     return facts;
 }
 
@@ -120,7 +102,7 @@ std::string session_folder(SessionStarted const& start)
 TextFile gaze_sidecar(Script const& script, RecordedSession const& session, double rate_hz, double start_s)
 {
     SessionStarted const& start = start_of(script, session);
-    bool const on_screen = !about_value(start, "viewing_distance_cm").empty();
+    bool const on_screen = !recorded_fact(start, "viewing_distance_cm").empty();
     Json j{
         {"TaskName", "session"},
         {"SamplingFrequency", rate_hz},
@@ -134,7 +116,7 @@ TextFile gaze_sidecar(Script const& script, RecordedSession const& session, doub
         {"y_coordinate", {{"Description", "From the upper edge of the window, down"}, {"Units", "pixel"}}},
         {"pupil_size", {{"Description", "diameter of the pupil, as the eye tracker reports it"}, {"Units", "mm"}}},
         {"step", {{"Description", "Step of the plan, from 1; n/a between them"}}}};
-    if (std::string const source = about_value(start, "gaze_source"); !source.empty())
+    if (std::string const source = recorded_fact(start, "gaze_source"); !source.empty())
         j["RawDataFilters"] = source;
     return {gaze_stem(script, session) + ".json", text_of(j)};
 }

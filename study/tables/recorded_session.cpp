@@ -1,5 +1,6 @@
 #include "study/tables/recorded_session.h"
 
+#include "gi/core/text.h"
 #include "study/journal/moments.h"
 #include "study/run/pair_run.h"
 
@@ -60,6 +61,22 @@ SessionStarted const& start_of(Script const& script, RecordedSession const& sess
     if (start->participant_id != session.plan.participant_id)
         throw broken(script, session, fmt::format("it is of the participant '{}'", start->participant_id));
     return *start;
+}
+
+std::string recorded_fact(SessionStarted const& start, std::string_view key)
+{
+    for (auto const& [name, value] : start.about)
+        if (name == key) return value;
+    return {};
+}
+
+std::optional<std::pair<double, double>> recorded_pair(SessionStarted const& start, std::string_view key)
+{
+    std::string const text = recorded_fact(start, key);
+    auto const x = text.find(" x ");
+    if (x == std::string::npos) return {};
+    auto const a = gi::parse_finite(text.substr(0, x)), b = gi::parse_finite(text.substr(x + 3));
+    return a && b && *a > 0 && *b > 0 ? std::optional(std::pair(*a, *b)) : std::nullopt;
 }
 
 bool is_complete(RecordedSession const& session)

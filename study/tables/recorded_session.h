@@ -29,6 +29,10 @@ void fill_chosen(Script const& script, RecordedSession& session);
 /// The first entry of the journal. @throws ScriptError if there is none, or it belongs to another experiment or
 /// participant than plan and script
 SessionStarted const& start_of(Script const& script, RecordedSession const& session);
+/// What a session recorded of itself under this name; empty = nothing.
+std::string recorded_fact(SessionStarted const& start, std::string_view key);
+/// Of such a fact: "1920 x 1080"; none if it is no two numbers above 0.
+std::optional<std::pair<double, double>> recorded_pair(SessionStarted const& start, std::string_view key);
 /// True if every step was done.
 bool is_complete(RecordedSession const& session);
 

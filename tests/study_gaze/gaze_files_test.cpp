@@ -110,6 +110,15 @@ TEST_F(BidsGaze, OfTwoEyesIsTheirMean)
     EXPECT_NEAR(a.recordings[0]->sequence.ms_per_deg, 2.2, 0.5);
 }
 
+TEST_F(BidsGaze, RowsWithOtherCellsAreCounted)
+{
+    write(eye_file(1), gi::gzip("0\t960\t540\t4\n2\t960\n4\t960\t540\t4\t5\n6\t960\t540\tn/a\n8\t960\t540\t\n"));
+    GazeRecording const r = gaze_of_files({eye_file(1)}, {}, GazeEyes::mean).recordings.at(0);
+    EXPECT_EQ(r.counts.samples, 5);
+    EXPECT_EQ(r.counts.unreadable, 2);
+    EXPECT_EQ(r.samples.size(), 3u);
+}
+
 TEST_F(BidsGaze, BecomesADerivativeDataSet)
 {
     GazeAnalysis const a = analyse_gaze(gaze_of_files({eye_file(1), eye_file(2)}, {}, GazeEyes::mean), {});

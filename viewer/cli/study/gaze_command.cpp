@@ -8,7 +8,6 @@
 #include "study/display/model_file.h"
 #include "study/gaze/gaze_heat.h"
 #include "study/gaze/gaze_tables.h"
-#include "viewer/base/outputs.h"
 #include "viewer/base/version.h"
 #include "viewer/experiment/looked/looked_at.h"
 #include "viewer/experiment/stimuli/study_scenes.h"
@@ -57,6 +56,9 @@ Analysed analysed(GazeOptions const& o, GazeCall const& call)
         auto const eyes = o.eyes == "left"    ? study::GazeEyes::left
                           : o.eyes == "right" ? study::GazeEyes::right
                                               : study::GazeEyes::mean;
+        if (!call.exclude.empty())
+            throw gi::InputError("--exclude with files", "participants of records are excluded",
+                                 "leave out their files");
         if (o.follows_rays)
             throw gi::InputError("--objects with files", "only records of sessions name scenes and cameras",
                                  "give DIR before --gaze");
@@ -155,9 +157,8 @@ nlohmann::ordered_json to_json(study::GazeAnalysis const& a, std::optional<doubl
 int run_gaze(GazeOptions o, GazeCall const& call)
 {
     std::erase(o.files, ""); // CLI11 gives one for --gaze without values
-    std::vector<std::string> inputs = o.files;
-    for (std::string const& file : {o.display_model, o.picture, call.script}) inputs.push_back(file);
-    check_outputs({}, inputs);
+    if (!o.picture.empty() && call.out.empty())
+        throw gi::InputError("--picture without --out", "there is no heat map to lay on it", "give --out FOLDER");
     std::optional<gi::Picture> picture;
     if (!o.picture.empty()) picture = gi::read_picture(o.picture);
     auto const [analysis, looked] = analysed(o, call);

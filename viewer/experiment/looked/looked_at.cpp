@@ -29,7 +29,6 @@ struct FollowedView {
     study::AnalysedGaze const* gaze;
     study::ViewedGaze const* viewed;
     std::vector<SeenPicture> pictures;
-    glm::dvec2 window_px{};
     study::SessionStarted const* start;
 };
 
@@ -40,14 +39,6 @@ struct Look {
 };
 
 constexpr double kLook_s = 0.02; ///< longest part of a fixation while the camera moves
-
-glm::dvec2 window_of(study::SessionStarted const& start, study::ScreenGeometry const& screen)
-{
-    for (auto const& [key, value] : start.about)
-        if (int x = 0, y = 0; key == "window_px" && std::sscanf(value.c_str(), "%d x %d", &x, &y) == 2)
-            return {x, y};
-    return {screen.width_px, screen.height_px};
-}
 
 /// @return why it cannot be followed; empty = it can
 std::string picture_of(study::Dataset const& records, study::TrialRow const& row,
@@ -153,13 +144,14 @@ public:
         auto const views = stimulus_views(place, picture.settings, view, look.time_s);
         gi::CameraRays const camera =
             gi::camera_rays(views.at(0).camera, views[0].width, views[0].height, world_.origin);
+        glm::dvec2 const window_px(v.gaze->recording.window_px.first, v.gaze->recording.window_px.second);
         std::vector<gi::Ray> rays;
         std::vector<std::size_t> of;
         for (std::size_t i = 0; i < offsets_.size(); ++i) {
             if (found[i]) continue;
             auto const at = study::offset_place(v.gaze->recording.screen, look.place_px, offsets_[i]);
             if (!at) continue;
-            glm::dvec2 const px = glm::dvec2(at->first, at->second) + 0.5 * v.window_px - picture.corner_px;
+            glm::dvec2 const px = glm::dvec2(at->first, at->second) + 0.5 * window_px - picture.corner_px;
             if (px.x < 0 || px.y < 0 || px.x >= picture.size_px.x || px.y >= picture.size_px.y) continue;
             found[i] = true;
             rays.push_back(camera.through(gi::vec2(px)));
@@ -269,7 +261,7 @@ private:
     void collect(study::AnalysedGaze const& gaze, study::ViewedGaze const& v,
                  std::vector<study::TrialRow> const& rows, study::SessionStarted const& start)
     {
-        FollowedView followed{&gaze, &v, {}, window_of(start, gaze.recording.screen), &start};
+        FollowedView followed{&gaze, &v, {}, &start};
         for (study::TrialRow const& row : rows) {
             if (row.done->step != v.view->step || row.done->attempt != v.view->attempt) continue;
             for (char const letter : v.view->shown)

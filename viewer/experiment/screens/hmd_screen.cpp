@@ -56,6 +56,7 @@ std::vector<std::pair<std::string, std::string>> HmdScreen::about() const
 {
     glm::ivec2 const px = frame_.views.empty() ? glm::ivec2(0) : size_of(frame_.views[0]);
     return {{"display", fmt::format("headset, {} x {} px an eye", px.x, px.y)},
+            {"window_px", fmt::format("{} x {}", size_px().x, size_px().y)},
             {"opengl", context_.gl().description()}};
 }
 
