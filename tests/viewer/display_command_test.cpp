@@ -45,6 +45,30 @@ TEST(DisplayCommand, ImportsAndSaysWhatIsLost)
     }
 }
 
+TEST(DisplayCommand, WritesTheMapsOfACalibrationBesideTheDisplay)
+{
+    TemporaryFolder const folder;
+    std::vector<unsigned char> const grey(4 * 2 * 3, 128);
+    gi::write_png(folder / "blend.png", 4, 2, grey);
+    std::string const xml =
+        "<MPCDI profile='3d' version='2.0' date=''><display><buffer id='b'><region id='left' xResolution='40' "
+        "yResolution='20' x='0' y='0' xsize='1' ysize='1'><frustum><yaw>0</yaw><pitch>0</pitch><roll>0</roll>"
+        "<leftAngle>-30</leftAngle><rightAngle>30</rightAngle><downAngle>-20</downAngle><upAngle>20</upAngle>"
+        "</frustum></region></buffer></display><files><fileset region='left'><alphaMap><path>blend.png</path>"
+        "<gammaEmbedded>2.2</gammaEmbedded></alphaMap></fileset></files></MPCDI>";
+    std::ofstream(folder / "mpcdi.xml") << xml;
+    Outcome const o = run_well("display import mpcdi.xml --out room.yaml", folder.path());
+    EXPECT_NE(o.out.find("1 maps and pictures, from a configuration of MPCDI"), std::string::npos) << o.out;
+    EXPECT_EQ(file_text(folder / "room_files/left_blend.png"), file_text(folder / "blend.png"));
+    run_well("display check room.yaml", folder.path());
+    std::ofstream(folder / "cut.mpcdi") << "PK";
+    Outcome const bad = run("display import cut.mpcdi --out cut.yaml", folder.path());
+    EXPECT_EQ(bad.code, 2);
+    EXPECT_NE(bad.err.find("cut.mpcdi: this is no zip archive"), std::string::npos) << bad.err;
+    std::ofstream(folder / "a.ol") << "x";
+    EXPECT_EQ(run("display import a.ol --out a.yaml", folder.path()).code, 2);
+}
+
 TEST(DisplayCommand, ImportsAPatchOnItsBase)
 {
     TemporaryFolder const folder;

@@ -87,6 +87,11 @@ TEST(PixelMap, DamagedFilesAreRefused)
           {nan_only, "m.pfm: no pixel has a position"}})
         EXPECT_EQ(pfm_message(text).find(wanted), 0u) << wanted << " | " << pfm_message(text);
     EXPECT_NE(message_of([&] { parse_light(bytes_of("PNG"), 1, "b.png"); }).find("b.png"), std::string::npos);
+    std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x40\0\0\0\x40\0", 24); // 16384 x 16384 in its header
+    EXPECT_NE(message_of([&] {
+                  parse_light(bytes_of(png + std::string(50000, 'x')), 1, "b.png");
+              }).find("b.png: a picture of 268435456 pixels"),
+              std::string::npos);
     // Any byte changed, any end cut off: a map or a message.
     std::string const whole = pfm_text("PF\n2 2\n-1\n", good);
     for (std::size_t k = 0; k < whole.size(); ++k) {

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 
 namespace viewer {
 
@@ -102,14 +103,8 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
 {
     DisplayFormat const format = format_of(file);
     std::string name = file.string();
-    if (format == DisplayFormat::mpcdi && file.extension() != ".xml") {
-        CalibrationFiles const archive = CalibrationFiles::of_archive(file);
-        std::string const xml = mpcdi_text(archive, file, name);
-        return display_of(read_mpcdi(xml, name, archive, log), name, log);
-    }
-    if (format == DisplayFormat::vioso)
-        return display_of(read_vioso(read_map_bytes(file), name, kViosoUnit_m, log), name, log);
-    std::string const text = text_of(file);
+    bool const is_archive = format == DisplayFormat::mpcdi && file.extension() != ".xml";
+    std::string const text = is_archive || format == DisplayFormat::vioso ? "" : text_of(file);
     bool const is_vrui = format == DisplayFormat::vrui && !is_ndisplay_cfg(text);
     if (!is_vrui && !(o.section.empty() && o.base_file.empty()))
         throw gi::InputError("a section or base file of " + name, "only configurations of Vrui have them",
@@ -124,12 +119,18 @@ Display parse(std::filesystem::path const& file, ImportOptions const& o, ImportL
     case DisplayFormat::ndisplay:
         return parse_ndisplay(text, name, log);
     case DisplayFormat::mpcdi:
+        if (is_archive) {
+            CalibrationFiles const archive = CalibrationFiles::of_archive(file);
+            std::string const xml = mpcdi_text(archive, file, name);
+            return display_of(read_mpcdi(xml, name, archive, log), name, log);
+        }
         return display_of(read_mpcdi(text, name, CalibrationFiles::of_folder(file.parent_path()), log), name, log);
     case DisplayFormat::vrui:
         if (!is_vrui) return parse_ndisplay_cfg(text, name, log);
         if (o.base_file.empty()) return parse_vrui(text, name, o.section, log);
         return parse_vrui({{text_of(o.base_file), o.base_file.string()}, {text, name}}, o.section, log);
     case DisplayFormat::vioso:
+        return display_of(read_vioso(read_map_bytes(file), name, kViosoUnit_m, log), name, log);
     case DisplayFormat::yaml:
         break;
     }
@@ -161,9 +162,19 @@ std::string ImportLog::keep_file(std::string const& name, std::vector<unsigned c
     return free;
 }
 
+void ImportLog::keep_only(std::set<std::string> const& names) const
+{
+    std::erase_if(*files_, [&](KeptFile const& f) { return !names.contains(f.name); });
+}
+
 Display import_display(std::filesystem::path const& file, ImportOptions const& options, ImportLog const& log)
 {
-    return parse(file, options, log);
+    Display display = parse(file, options, log);
+    std::set<std::string> named;
+    for (Wall const& wall : display.walls)
+        for (std::string const& name : files_of(wall)) named.insert(name);
+    log.keep_only(named); // without those of viewports that were skipped
+    return display;
 }
 
 double imported_eyes(double metres, std::string const& where, ImportLog const& log)

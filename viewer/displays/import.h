@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,7 @@ public:
     gi::Report& report() const { return *report_; }
     /// Keeps a file under the prefix and `name`, or another name if it is taken; returns what the display file calls it.
     std::string keep_file(std::string const& name, std::vector<unsigned char> bytes) const;
+    void keep_only(std::set<std::string> const& names) const;
     std::vector<KeptFile> const& files() const { return *files_; } ///< to be written beside the display file
 
 private:

@@ -1,5 +1,6 @@
 #include "viewer/displays/pixel_map.h"
 
+#include "gi/core/claimed_size.h"
 #include "gi/core/error.h"
 #include "gi/core/file.h"
 #include "gi/core/text.h"
@@ -15,6 +16,7 @@ namespace viewer {
 namespace {
 
 constexpr std::size_t kMostMapBytes = std::size_t(1) << 30;
+constexpr std::size_t kMostPixels = std::size_t(1) << 26; ///< of a picture of light: twice 8K
 
 bool is_same(glm::vec3 const& a, glm::vec3 const& b)
 {
@@ -191,6 +193,11 @@ PixelMap parse_points(std::span<unsigned char const> bytes, double unit_m, std::
 
 PixelMap parse_light(std::span<unsigned char const> bytes, double gamma, std::string const& name)
 {
+    std::size_t const claimed = gi::claimed_pixels(bytes);
+    if (claimed > kMostPixels)
+        throw gi::InputError({name, 0, 0}, fmt::format("a picture of {} pixels", claimed),
+                             fmt::format("a map of light has {} at most", kMostPixels),
+                             "export a PNG of the viewport's size");
     gi::Picture const picture = gi::decode_stored(bytes, name);
     if (!picture.ends_at_one || picture.width > kLargestMap_px || picture.height > kLargestMap_px ||
         picture.width < 2 || picture.height < 2)
