@@ -195,9 +195,15 @@ void find_by_dispersion(GazeRun const& run, GazeEventSettings const& settings, G
     }
     for (Stretch const& f : found) events.fixations.push_back(fixation_of(run, f, {}));
     for (std::size_t f = 1; f < found.size(); ++f) {
-        Stretch const between{found[f - 1].last + 1, found[f].first - 1};
-        if (between.first > between.last) continue;
-        Saccade const s = saccade_of(run, between, &found[f - 1], &found[f], settings);
+        // Fixations may touch, as where a saccade is shorter than a step: it is seen at their ends.
+        bool const touch = found[f - 1].last + 1 == found[f].first;
+        Stretch const between = touch ? Stretch{found[f - 1].last, found[f].first}
+                                      : Stretch{found[f - 1].last + 1, found[f].first - 1};
+        Saccade s = saccade_of(run, between, &found[f - 1], &found[f], settings);
+        if (touch) {
+            s.start_s = s.end_s = run.end_s(found[f - 1].last);
+            s.is_cut = true; // its duration is unknown
+        }
         if (s.peak_deg_s > settings.velocity_deg_s) events.saccades.push_back(s);
     }
 }

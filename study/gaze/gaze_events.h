@@ -43,7 +43,7 @@ struct Saccade {
     double from_x_px = 0, from_y_px = 0, to_x_px = 0, to_y_px = 0; ///< means over the window before and after it
     double amplitude_deg = 0;                                      ///< between these
     double peak_deg_s = 0; ///< greatest velocity, blunted by the window
-    bool is_cut = false;   ///< as Fixation: a part of it is missing
+    bool is_cut = false;   ///< as Fixation: a part of it is missing; or its duration is unknown (I-DT)
 };
 
 /// Time without valid samples that is not bridged.

@@ -138,6 +138,19 @@ TEST(GazeEvents, HaveExactAngles)
     EXPECT_FALSE(e.saccades[0].is_cut);
 }
 
+TEST(GazeEvents, FixationsThatTouchHaveASaccadeByDispersion)
+{
+    std::vector<GazeSample> samples;
+    for (int i = 0; i < 100; ++i) samples.push_back({0.01 * i, i < 50 ? 0.0 : 300.0, 0, NAN, true});
+    GazeEventSettings settings;
+    settings.method = GazeMethod::idt;
+    GazeEvents const e = find_gaze_events(samples, kGazeScreen, settings);
+    ASSERT_EQ(e.fixations.size(), 2u);
+    ASSERT_EQ(e.saccades.size(), 1u);
+    EXPECT_TRUE(e.saccades[0].is_cut) << "its duration is unknown";
+    EXPECT_NEAR(e.saccades[0].amplitude_deg, deg_between(kGazeScreen, {0, 0}, {300, 0}), 1e-9);
+}
+
 /// Gaze at rest, 500 Hz, without samples from 0.4 s for so long; afterwards moved by some degrees.
 GazeEvents with_loss(double lost_s, double moved_deg, bool leaves_out)
 {

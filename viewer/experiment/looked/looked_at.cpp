@@ -274,6 +274,7 @@ private:
                     followed.pictures.push_back(std::move(picture));
                 }
         }
+        if (followed.pictures.empty()) return leave_out("its stimuli are not in the journal");
         views_.push_back(std::move(followed));
         dwell_.emplace_back(std::size_t(settings_.rays));
         found_.emplace_back();
