@@ -197,11 +197,12 @@ SurfaceHeat surface_of(gi::World const& world, std::string const& scene, std::ve
     return heat;
 }
 
-/// What has the same surfaces: scene, edits, and whether its clips play.
+/// What has the same surfaces: scene, edits other than those of lights, and whether its clips play.
 std::string surfaces_key(StimulusSettings const& s)
 {
     nlohmann::json edits = nlohmann::json::array();
-    for (Change const& c : s.edits) edits.push_back({c.key, c.value});
+    for (Change const& c : s.edits)
+        if (!c.key.starts_with("light.") && !c.key.starts_with("environment.")) edits.push_back({c.key, c.value});
     return s.scene + "\n" + edits.dump() + (s.settings.play ? "play" : "");
 }
 
