@@ -114,7 +114,14 @@ int run_report(AnalyzeOptions& o)
         facts.truth = truth_beside(o.dir);
         facts.frame_interval_ms = frame_intervals_ms(o.dir);
         auto gaze = study::gaze_of_records(o.dir, records, {}, o.settings.exclude);
-        if (!gaze.recordings.empty()) facts.gaze = study::gaze_tables(study::analyse_gaze(std::move(gaze), {}));
+        if (!gaze.recordings.empty()) {
+            study::GazeAnalysis const looks = study::analyse_gaze(std::move(gaze), {});
+            facts.gaze = study::gaze_tables(looks);
+            study::ResultTable doubts{"gaze_cautions", "What was left out of gaze, or is doubtful", "", false, {}};
+            doubts.table.columns = {study::name_column("caution", "")};
+            for (std::string const& c : looks.cautions) doubts.table.rows.push_back({study::cell(c)});
+            if (!looks.cautions.empty()) facts.gaze.push_back(std::move(doubts));
+        }
     }
     gi::write_text(o.out, study::report_page(records.script, records.sessions, analysis, facts));
     fmt::print("{}\n", o.out);

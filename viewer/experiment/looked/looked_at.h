@@ -10,11 +10,9 @@
 namespace viewer {
 
 struct LookedAtSettings {
-    double accuracy_deg =
-        0.5;         ///< of the eye tracker: standard deviation of each axis (of good ones: Holmqvist et al.
-                     ///< 2011, Eye Tracking, chapter 11: 0.5 degrees)
-    int rays = 128;  ///< for each fixation
-    int threads = 0; ///< 0 = all
+    double accuracy_deg = 0.5; ///< of the eye tracker: standard deviation of each axis
+    int rays = 128;            ///< for each fixation
+    int threads = 0;           ///< 0 = all
 };
 
 struct LookedAt {
