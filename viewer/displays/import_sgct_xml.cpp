@@ -242,8 +242,10 @@ Display parse_sgct_xml(std::string const& text, std::string const& name, ImportL
                              tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()), "check the brackets");
     XMLElement const* const root = document.FirstChildElement("Cluster");
     if (!root)
-        throw gi::InputError({name, 1, 1}, "there is no element <Cluster>", "configurations of SGCT have one",
-                             "is this a file of SGCT?");
+        throw gi::InputError(
+            {name, 1, 1}, "there is no element <Cluster>", "configurations of SGCT have one",
+            "of XML files, those of SGCT (<Cluster>) and MPCDI (<MPCDI>) are read; calibration programs such as "
+            "domeprojection's export MPCDI");
     SgctXml const x{name, log};
     SgctConfig config;
     lose_address(word(*root, "masterAddress"), text_at(x.at(*root)), x.log);
