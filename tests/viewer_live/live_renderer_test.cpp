@@ -150,6 +150,45 @@ TEST(LiveRenderer, PicturesHaveMarginsWhileTheHeadTurns)
 }
 
 /// Of all ranks the slowest decides what there is time for, whatever this one took for its share of the pixels.
+TEST(LiveRenderer, PicturesOfLightAloneComeBeforeTheFirstThatRefines)
+{
+    Live live;
+    live.renderer.reset();
+    live.commands.clear();
+    live.session.apply({"refine", false}); // it rests after the first at full size
+    live.session.apply({"draw_surfaces", true});
+    FrameClock clock;
+    LiveRenderer::Hooks hooks;
+    hooks.own_views = [&](FrameCommand const& command) {
+        for (int k = 0; k < 4; ++k) clock.render(command); // slow enough for small pictures
+        return command.views;
+    };
+    hooks.finished = [&](LiveFrame const& f) { live.commands.push_back(f.command); };
+    live.renderer = std::make_unique<LiveRenderer>(live.session, clock, nullptr, hooks);
+    for (int i = 0; i < 20; ++i) {
+        Viewpoint at;
+        at.pose_s = clock.now_s();
+        at.drawn_scale = 0.5;
+        gi::Camera camera = live.eye;
+        camera.world_from_camera =
+            live.eye.world_from_camera * glm::translate(gi::dmat4(1), gi::dvec3{0.001 * i, 0, 0});
+        at.views = {{"window", camera, 160, 120, -1}};
+        live.renderer->look(at);
+        while (!live.renderer->rests()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    live.renderer->stop();
+    std::vector<FrameCommand> const& all = live.commands;
+    ASSERT_GE(all.size(), 4u);
+    FrameCommand const *const moving = &all[all.size() - 4], *const last = &all.back();
+    EXPECT_TRUE(moving[0].only_light);
+    EXPECT_TRUE(moving[1].only_light);
+    EXPECT_LT(moving[1].light_scale, 0.5);
+    EXPECT_TRUE(moving[2].only_light);
+    EXPECT_EQ(moving[2].light_scale, 0.5);
+    EXPECT_FALSE(last->only_light);
+    EXPECT_EQ(last->light_scale, 1);
+}
+
 TEST(LiveRenderer, GoesByTheSlowestRank)
 {
     for (bool const slow : {true, false}) {

@@ -224,15 +224,15 @@ private:
         double const done = clock_.now_s();
         drew_s_ = done - drawing;
         score_moments(done - begun_s_); // of what is on the screen until now
-        bool const anything = moves(now);
-        if (anything) {
+        bool const in_motion = moves(now);
+        if (in_motion) {
             if (shown_s_ > 0) counts_.gaps_ms.push_back(1e3 * (done - shown_s_));
             counts_.light_ages_ms.push_back(1e3 * (done - newest->command.pose_s));
             counts_.drawing_ms.push_back(1e3 * drew_s_);
             counts_.surfaces_scale += settings_.surfaces_scale;
             ++counts_.shown;
         }
-        shown_s_ = anything ? done : 0;
+        shown_s_ = in_motion ? done : 0;
         turn_ = drawn;
         note_mean(done - begun_s_);
         if (now > walker_.path().seconds() + kSettles_s) {
